@@ -1,1 +1,16 @@
-//! placeholder
+//! Tridiagonal systems with scalar or vector right-hand sides.
+//!
+//! Three solvers, all O(n) and without pivoting (the systems of interpolating splines are strictly
+//! diagonally dominant):
+//! [`solve_tridiagonal`] and [`solve_cyclic`] work in place on arrays, [`Resolvable`] keeps what it
+//! needs to solve again only where rows changed.
+
+mod cyclic;
+mod error;
+mod resolvable;
+mod tridiagonal;
+
+pub use cyclic::solve_cyclic;
+pub use error::SolveError;
+pub use resolvable::{Resolvable, Row, Rows};
+pub use tridiagonal::{RightHandSide, solve_tridiagonal};

@@ -1,1 +1,38 @@
-//! placeholder
+//! Geometry primitives of interpolating space curves.
+//!
+//! Data flows one way through this crate: points and a [`Parametrization`] make a [`DataPolygon`]
+//! (chords, binormal vectors, the sign of the discrete torsion); a spline family turns the polygon
+//! into end legs of cubic Bézier segments; [`PiecewiseCubic`] stores and evaluates them; and
+//! [`CubicSegment`] answers every question about one segment in closed form.
+//!
+//! Notation (one for all papers): points `I_0 … I_N`, parameters `u_0 < … < u_N`, spacing
+//! `h_i = u_{i+1} − u_i`, chords `L_i = I_{i+1} − I_i`, binormal vectors `P_i = L_{i−1} × L_i`,
+//! `Γ_i = det[L_{i−1}, L_i, L_{i+1}]`. A cubic segment has Bézier legs `a, b, c`.
+//!
+//! Sources: M. I. Karavelas, P. D. Kaklis, *Spatial shape-preserving interpolation using
+//! ν-splines*, Numerical Algorithms 23 (2000); R. S. Gautam, *Shape preservation behavior of
+//! spline curves*.
+
+mod arc_length;
+pub mod bernstein;
+mod boundary;
+mod error;
+mod frame;
+mod locate;
+mod parametrization;
+mod piecewise;
+mod polygon;
+mod segment;
+mod vector;
+
+pub use arc_length::ArcLength;
+pub use boundary::Boundary;
+pub use error::InputError;
+pub use frame::{Frame, curvature, curvature_vector, frame, torsion};
+pub use glam::DVec3;
+pub use locate::{Locator, Side};
+pub use parametrization::Parametrization;
+pub use piecewise::{Domain, PiecewiseCubic};
+pub use polygon::{DataPolygon, Dimension};
+pub use segment::CubicSegment;
+pub use vector::{length, normalize};

@@ -1,0 +1,114 @@
+//! What can be wrong with a user's input: always with the argument, the place and the value.
+
+/// Unusable input. Every variant names the argument, the index and the offending value.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum InputError {
+    /// A NaN or an infinity.
+    #[error("{argument}[{index}] must be finite, got {value}")]
+    NotFinite {
+        /// Name of the argument.
+        argument: &'static str,
+        /// Index of the value along the first axis.
+        index: usize,
+        /// The value.
+        value: f64,
+    },
+    /// Fewer points than a curve needs.
+    #[error("{argument} must hold at least {needed} points{why}, got {found}")]
+    TooFewPoints {
+        /// Name of the argument.
+        argument: &'static str,
+        /// The least number.
+        needed: usize,
+        /// The number given.
+        found: usize,
+        /// Who needs them, with a leading space, or empty.
+        why: &'static str,
+    },
+    /// Two arguments whose lengths do not belong together.
+    #[error("{argument} must have length {expected} ({per}), got {found}")]
+    Length {
+        /// Name of the argument.
+        argument: &'static str,
+        /// The length it should have.
+        expected: usize,
+        /// The length it has.
+        found: usize,
+        /// What there is one of for each entry.
+        per: &'static str,
+    },
+    /// A point equal to the point before it.
+    #[error("points[{index}] repeats points[{previous}]: {value}; neighbouring points must differ",
+            previous = index - 1)]
+    RepeatedPoint {
+        /// Index of the second of the two.
+        index: usize,
+        /// The point.
+        value: glam::DVec3,
+    },
+    /// Parameters that do not increase strictly.
+    #[error("{argument} must increase strictly, but {argument}[{index}] = {value} does not exceed \
+             {argument}[{before}] = {previous}", before = index - 1)]
+    NotIncreasing {
+        /// Name of the argument.
+        argument: &'static str,
+        /// Index of the value that is too small.
+        index: usize,
+        /// The value before it.
+        previous: f64,
+        /// The value.
+        value: f64,
+    },
+    /// Periodic data whose last point is not the first.
+    #[error("boundary \"periodic\" needs points[{last}] = points[0], got {end} and {start}")]
+    NotClosed {
+        /// Index of the last point.
+        last: usize,
+        /// The first point.
+        start: glam::DVec3,
+        /// The last point.
+        end: glam::DVec3,
+    },
+    /// A number outside the range it must lie in.
+    #[error("{argument}[{index}] must be {allowed}, got {value}")]
+    OutOfRange {
+        /// Name of the argument.
+        argument: &'static str,
+        /// Index of the value.
+        index: usize,
+        /// The value.
+        value: f64,
+        /// The range in words.
+        allowed: &'static str,
+    },
+    /// One number that is not what it must be.
+    #[error("{argument} must be {allowed}, got {value}")]
+    Scalar {
+        /// Name of the argument.
+        argument: &'static str,
+        /// The value.
+        value: f64,
+        /// The range in words.
+        allowed: &'static str,
+    },
+    /// An end tangent that has no direction.
+    #[error("boundary {end} tangent must be a non-zero vector, got {value}")]
+    ZeroTangent {
+        /// `"start"` or `"end"`.
+        end: &'static str,
+        /// The vector.
+        value: glam::DVec3,
+    },
+    /// Finite data whose differences leave the range of f64.
+    #[error("points[{index}] and points[{next}] are too far apart for f64: {what} is {value}",
+            next = index + 1)]
+    Overflow {
+        /// Index of the segment.
+        index: usize,
+        /// The quantity that overflows.
+        what: &'static str,
+        /// Its value.
+        value: f64,
+    },
+}

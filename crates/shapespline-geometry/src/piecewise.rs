@@ -1,0 +1,389 @@
+//! The piecewise cubic curve: the one storage and the one evaluator of all families.
+
+use std::sync::OnceLock;
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use crate::{
+    CubicSegment, Dimension, InputError, Locator, Side, locate::search,
+    parametrization::check_increasing,
+};
+
+/// What a parameter outside the knots means.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+pub enum Domain {
+    /// An open curve: the end cubics go on.
+    Open,
+    /// A closed curve: parameters wrap around.
+    Closed,
+}
+
+/// A curve of cubic Bézier segments between points, each run through linearly in its parameter
+/// interval: `t = (u − u_i)/h_i`.
+///
+/// Only the points and each segment's end legs are held (80 bytes a segment in all); positions at
+/// knots are the points exactly.
+#[derive(Debug, serde::Serialize, serde::Deserialize)]
+pub struct PiecewiseCubic {
+    knots: Vec<f64>,
+    points: Vec<DVec3>,
+    /// First and last leg of each segment, `a_i` and `c_i`.
+    legs: Vec<[DVec3; 2]>,
+    dimension: Dimension,
+    domain: Domain,
+    /// Made by the first large unsorted evaluation.
+    #[serde(skip)]
+    locator: OnceLock<Option<Locator>>,
+}
+
+impl Clone for PiecewiseCubic {
+    fn clone(&self) -> Self {
+        Self {
+            knots: self.knots.clone(),
+            points: self.points.clone(),
+            legs: self.legs.clone(),
+            dimension: self.dimension,
+            domain: self.domain,
+            locator: OnceLock::new(),
+        }
+    }
+}
+
+impl PartialEq for PiecewiseCubic {
+    fn eq(&self, other: &Self) -> bool {
+        self.knots == other.knots
+            && self.points == other.points
+            && self.legs == other.legs
+            && (self.dimension, self.domain) == (other.dimension, other.domain)
+    }
+}
+
+/// Queries are evaluated in blocks of this many, each block on one thread.
+const BLOCK: usize = 16_384;
+
+impl PiecewiseCubic {
+    /// Curve from knots, points and the end legs of each segment.
+    ///
+    /// # Errors
+    /// Knots that do not increase, lengths that do not belong together, non-finite legs.
+    pub fn new(
+        knots: Vec<f64>,
+        points: Vec<DVec3>,
+        legs: Vec<[DVec3; 2]>,
+        dimension: Dimension,
+        domain: Domain,
+    ) -> Result<Self, InputError> {
+        if points.len() < 2 {
+            let (argument, found) = ("points", points.len());
+            return Err(InputError::TooFewPoints { argument, needed: 2, found, why: "" });
+        }
+        if knots.len() != points.len() {
+            let (argument, expected, found) = ("knots", points.len(), knots.len());
+            return Err(InputError::Length { argument, expected, found, per: "one for each point" });
+        }
+        if legs.len() + 1 != points.len() {
+            let (argument, expected, found) = ("legs", points.len() - 1, legs.len());
+            let per = "one pair for each segment";
+            return Err(InputError::Length { argument, expected, found, per });
+        }
+        check_increasing("knots", &knots)?;
+        let finite = |[a, c]: &[DVec3; 2]| a.is_finite() && c.is_finite();
+        if let Some(index) = legs.iter().position(|pair| !finite(pair)) {
+            let value = f64::NAN;
+            return Err(InputError::NotFinite { argument: "legs", index, value });
+        }
+        Ok(Self { knots, points, legs, dimension, domain, locator: OnceLock::new() })
+    }
+
+    /// The knots `u_0 < … < u_N`.
+    #[must_use]
+    pub fn knots(&self) -> &[f64] {
+        &self.knots
+    }
+
+    /// The points at the knots.
+    #[must_use]
+    pub fn points(&self) -> &[DVec3] {
+        &self.points
+    }
+
+    /// First and last leg of each segment, `a_i` and `c_i`.
+    #[must_use]
+    pub fn legs(&self) -> &[[DVec3; 2]] {
+        &self.legs
+    }
+
+    /// Number of segments.
+    #[must_use]
+    pub fn segments(&self) -> usize {
+        self.legs.len()
+    }
+
+    /// Planar or spatial.
+    #[must_use]
+    pub fn dimension(&self) -> Dimension {
+        self.dimension
+    }
+
+    /// Open or closed.
+    #[must_use]
+    pub fn domain(&self) -> Domain {
+        self.domain
+    }
+
+    /// One segment.
+    #[must_use]
+    pub fn segment(&self, i: usize) -> CubicSegment {
+        let [a, c] = self.legs[i];
+        CubicSegment::from_end_legs(self.points[i], self.points[i + 1], a, c)
+    }
+
+    /// Segment and local parameter `t` of a parameter; at a knot the segment on `side`. Outside an
+    /// open curve `t` leaves `[0, 1]`; on a closed one the parameter wraps. Cost O(log N).
+    #[must_use]
+    pub fn locate(&self, u: f64, side: Side) -> (usize, f64) {
+        let u = self.wrap(u);
+        let mut i = search(&self.knots, u, side);
+        // On a closed curve the segment that ends at the first knot is the last one.
+        if self.domain == Domain::Closed && side == Side::Left && u == self.knots[0] {
+            i = self.segments() - 1;
+            return (i, 1.0);
+        }
+        (i, self.local(i, u))
+    }
+
+    /// First, second and third derivatives with respect to `u`.
+    #[must_use]
+    pub fn derivatives(&self, u: f64, side: Side) -> [DVec3; 3] {
+        let (i, t) = self.locate(u, side);
+        let h = self.knots[i + 1] - self.knots[i];
+        let [d1, d2, d3] = self.segment(i).derivatives(t);
+        [d1 / h, d2 / h / h, d3 / h / h / h]
+    }
+
+    /// Derivative of order `order` (0: position) at one parameter. Cost O(log N).
+    #[must_use]
+    pub fn evaluate(&self, u: f64, order: usize, side: Side) -> DVec3 {
+        let (i, t) = self.locate(u, side);
+        match order {
+            0 => self.derivative::<0>(i, t),
+            1 => self.derivative::<1>(i, t),
+            2 => self.derivative::<2>(i, t),
+            3 => self.derivative::<3>(i, t),
+            _ => self.derivative::<4>(i, t),
+        }
+    }
+
+    /// Derivatives of order `order` at many parameters, written to `out` row by row, with as many
+    /// columns as the curve has coordinates.
+    ///
+    /// Sorted parameters cost O(1) each, unsorted ones O(1) through a bucket table (made once, when
+    /// there are many); large batches run on all threads.
+    ///
+    /// # Errors
+    /// `out` of another length than parameters times coordinates.
+    pub fn evaluate_many(
+        &self,
+        u: &[f64],
+        order: usize,
+        side: Side,
+        out: &mut [f64],
+    ) -> Result<(), InputError> {
+        let columns = self.dimension.len();
+        if out.len() != u.len() * columns {
+            let (expected, found) = (u.len() * columns, out.len());
+            let per = "one for each parameter and coordinate";
+            return Err(InputError::Length { argument: "out", expected, found, per });
+        }
+        match (order, columns) {
+            (0, 2) => self.fill::<0, 2>(u, side, out),
+            (1, 2) => self.fill::<1, 2>(u, side, out),
+            (2, 2) => self.fill::<2, 2>(u, side, out),
+            (3, 2) => self.fill::<3, 2>(u, side, out),
+            (_, 2) => self.fill::<4, 2>(u, side, out),
+            (0, _) => self.fill::<0, 3>(u, side, out),
+            (1, _) => self.fill::<1, 3>(u, side, out),
+            (2, _) => self.fill::<2, 3>(u, side, out),
+            (3, _) => self.fill::<3, 3>(u, side, out),
+            (_, _) => self.fill::<4, 3>(u, side, out),
+        }
+        Ok(())
+    }
+
+    fn fill<const ORDER: usize, const COLUMNS: usize>(
+        &self,
+        u: &[f64],
+        side: Side,
+        out: &mut [f64],
+    ) {
+        // A table costs about as much to make as it saves on one query a segment.
+        let table = if u.len() >= self.segments().max(64) { self.table() } else { None };
+        let block = |u: &[f64], out: &mut [f64]| {
+            let mut hint = 0;
+            for (&u, row) in u.iter().zip(out.chunks_exact_mut(COLUMNS)) {
+                let (i, t) = if side == Side::Right {
+                    let u = self.wrap(u);
+                    hint = self.near(hint, u, table);
+                    (hint, self.local(hint, u))
+                } else {
+                    self.locate(u, side)
+                };
+                let value = self.derivative::<ORDER>(i, t).to_array();
+                row.copy_from_slice(&value[..COLUMNS]);
+            }
+        };
+        if u.len() <= 2 * BLOCK {
+            block(u, out);
+        } else {
+            u.par_chunks(BLOCK)
+                .zip(out.par_chunks_mut(BLOCK * COLUMNS))
+                .for_each(|(u, out)| block(u, out));
+        }
+    }
+
+    fn table(&self) -> Option<&Locator> {
+        self.locator.get_or_init(|| Locator::new(&self.knots)).as_ref()
+    }
+
+    /// Segment of `u`: the one before, or the next (sorted queries), else by table or search.
+    #[inline]
+    fn near(&self, hint: usize, u: f64, table: Option<&Locator>) -> usize {
+        let last = self.segments() - 1;
+        if self.knots[hint] <= u {
+            if u < self.knots[hint + 1] {
+                return hint;
+            }
+            if hint < last && u < self.knots[hint + 2] {
+                return hint + 1;
+            }
+        }
+        match table {
+            Some(table) => table.segment(&self.knots, u),
+            None => search(&self.knots, u, Side::Right),
+        }
+    }
+
+    #[inline]
+    fn wrap(&self, u: f64) -> f64 {
+        let (first, last) = (self.knots[0], self.knots[self.knots.len() - 1]);
+        if self.domain == Domain::Closed && (u < first || u > last) {
+            first + (u - first).rem_euclid(last - first)
+        } else {
+            u
+        }
+    }
+
+    #[inline]
+    fn local(&self, i: usize, u: f64) -> f64 {
+        (u - self.knots[i]) / (self.knots[i + 1] - self.knots[i])
+    }
+
+    /// Derivative with respect to `u` of a segment at local `t`, as weights of end points and legs.
+    #[inline]
+    fn derivative<const ORDER: usize>(&self, i: usize, t: f64) -> DVec3 {
+        let (p, q, [a, c]) = (self.points[i], self.points[i + 1], self.legs[i]);
+        let s = 1.0 - t;
+        if ORDER == 0 {
+            // Exact at both ends, and the same run through backwards.
+            let (ss, tt) = (s * s, t * t);
+            return (p * (ss * (s + 3.0 * t)) + q * (tt * (t + 3.0 * s)))
+                + (a * (3.0 * ss * t) - c * (3.0 * s * tt));
+        }
+        let reciprocal = 1.0 / (self.knots[i + 1] - self.knots[i]);
+        let b = (q - p) - a - c;
+        match ORDER {
+            1 => (a * (s * s) + b * (2.0 * s * t) + c * (t * t)) * (3.0 * reciprocal),
+            2 => ((b - a) * s + (c - b) * t) * (6.0 * reciprocal) * reciprocal,
+            3 => {
+                // `t` enters only to hand a NaN on.
+                let third = (c - b) - (b - a) + DVec3::splat(0.0 * t.clamp(-1.0, 1.0));
+                third * (6.0 * reciprocal) * reciprocal * reciprocal
+            }
+            _ => DVec3::splat(0.0 * t.clamp(-1.0, 1.0)),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn cubic(u: f64) -> DVec3 {
+        DVec3::new(u * u * u - u, 2.0 * u * u + 1.0, 0.5 * u - 3.0)
+    }
+    fn slope(u: f64) -> DVec3 {
+        DVec3::new(3.0 * u * u - 1.0, 4.0 * u, 0.5)
+    }
+
+    fn planted(knots: &[f64], domain: Domain) -> PiecewiseCubic {
+        let legs = knots
+            .windows(2)
+            .map(|w| [slope(w[0]) * (w[1] - w[0]) / 3.0, slope(w[1]) * (w[1] - w[0]) / 3.0])
+            .collect();
+        let points = knots.iter().map(|&u| cubic(u)).collect();
+        PiecewiseCubic::new(knots.to_vec(), points, legs, Dimension::Three, domain).unwrap()
+    }
+
+    #[test]
+    fn a_planted_cubic_comes_back_from_every_evaluator() {
+        let knots = [-1.0, -0.4, 0.0, 0.3, 1.5];
+        let curve = planted(&knots, Domain::Open);
+        let many: Vec<f64> = (0..40_000).map(|k| -1.4 + (k * 7919 % 40_000) as f64 * 8e-5).collect();
+        let mut sorted = many.clone();
+        sorted.sort_by(f64::total_cmp);
+        for queries in [&many, &sorted, &vec![0.3, -0.4, 2.0]] {
+            for order in 0..5 {
+                let expected = |u: f64| match order {
+                    0 => cubic(u),
+                    1 => slope(u),
+                    2 => DVec3::new(6.0 * u, 4.0, 0.0),
+                    3 => DVec3::new(6.0, 0.0, 0.0),
+                    _ => DVec3::ZERO,
+                };
+                for side in [Side::Left, Side::Right] {
+                    let mut out = vec![f64::NAN; queries.len() * 3];
+                    curve.evaluate_many(queries, order, side, &mut out).unwrap();
+                    for (&u, row) in queries.iter().zip(out.chunks(3)) {
+                        let value = DVec3::from_slice(row);
+                        assert!((value - expected(u)).length() < 2e-11, "{order} {u} {value}");
+                        assert_eq!(value, curve.evaluate(u, order, side));
+                    }
+                }
+            }
+        }
+        for (i, &u) in knots.iter().enumerate() {
+            assert_eq!(curve.evaluate(u, 0, Side::Left), curve.points()[i]);
+            assert_eq!(curve.evaluate(u, 0, Side::Right), curve.points()[i]);
+        }
+    }
+
+    #[test]
+    fn nan_stays_nan_and_closed_curves_wrap() {
+        let curve = planted(&[0.0, 1.0, 3.0], Domain::Closed);
+        for order in 0..6 {
+            assert!(curve.evaluate(f64::NAN, order, Side::Right).is_nan());
+            let there = curve.evaluate(0.25, order, Side::Right);
+            assert_eq!(curve.evaluate(3.25, order, Side::Right), there);
+            assert_eq!(curve.evaluate(-2.75, order, Side::Right), there);
+        }
+        assert_eq!(curve.locate(0.0, Side::Left), (1, 1.0));
+    }
+
+    #[test]
+    fn parts_that_do_not_belong_together_are_refused() {
+        let legs = vec![[DVec3::X, DVec3::X]];
+        let make = |knots: &[f64], points: &[DVec3], legs: Vec<[DVec3; 2]>| {
+            let (knots, points) = (knots.to_vec(), points.to_vec());
+            PiecewiseCubic::new(knots, points, legs, Dimension::Three, Domain::Open)
+                .unwrap_err()
+                .to_string()
+        };
+        let points = [DVec3::ZERO, DVec3::X];
+        assert!(make(&[0.0], &points[..1], vec![]).contains("at least 2"));
+        assert!(make(&[0.0], &points, legs.clone()).contains("length 2"));
+        assert!(make(&[0.0, 0.0], &points, legs.clone()).contains("knots[1] = 0"));
+        assert!(make(&[0.0, 1.0], &points, vec![]).contains("length 1"));
+        assert!(make(&[0.0, 1.0], &points, vec![[DVec3::NAN, DVec3::X]]).contains("legs[0]"));
+    }
+}

@@ -1,0 +1,311 @@
+//! The data polygon: what the points themselves say about the shape of a curve through them.
+
+use glam::DVec3;
+
+use crate::{
+    Boundary, InputError, Parametrization,
+    boundary::{check_tangent, circle_tangent},
+    vector::normalize,
+};
+
+/// Number of coordinates of the data a polygon was made from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+pub enum Dimension {
+    /// Planar data; the third coordinate is zero throughout.
+    Two,
+    /// Data in space.
+    Three,
+}
+
+impl Dimension {
+    /// The number of coordinates.
+    #[must_use]
+    pub fn len(self) -> usize {
+        match self {
+            Self::Two => 2,
+            Self::Three => 3,
+        }
+    }
+
+    /// Never: there is no dimension without coordinates.
+    #[must_use]
+    pub fn is_empty(self) -> bool {
+        false
+    }
+}
+
+/// Points `I_0 … I_N` with parameters and end conditions, checked once, and the discrete shape they
+/// have: unit chords, binormal vectors, the sign of the discrete torsion (paper 001, section 2).
+///
+/// At the ends a stand-in takes the place of the missing chord: the end tangent where there is one,
+/// the first (last) chord itself for zero curvature; indices of closed data run modulo `N`.
+///
+/// All shape quantities are made of *unit* chords `l_i = L_i/‖L_i‖`, so they do not depend on the
+/// scale of the data: `‖binormal(i)‖` is the sine of the turning angle at node `i`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DataPolygon {
+    points: Vec<DVec3>,
+    parameters: Vec<f64>,
+    /// `l_{−1}, l_0, …, l_{N−1}, l_N`.
+    directions: Vec<DVec3>,
+    boundary: Boundary,
+    /// `D_0` and `D_N`, where the boundary has them.
+    tangents: Option<[DVec3; 2]>,
+    dimension: Dimension,
+}
+
+impl DataPolygon {
+    /// Polygon through points in space. Cost O(N).
+    ///
+    /// # Errors
+    /// Fewer than two points (three for periodic and circular ends), NaN or infinite coordinates,
+    /// repeated neighbours, a zero end tangent, periodic data that do not close, unusable
+    /// parameters, and data so far apart that differences overflow.
+    pub fn new(
+        points: Vec<DVec3>,
+        parametrization: &Parametrization,
+        boundary: Boundary,
+    ) -> Result<Self, InputError> {
+        Self::with_dimension(points, Dimension::Three, parametrization, boundary)
+    }
+
+    /// Polygon through points of the plane.
+    ///
+    /// # Errors
+    /// As [`DataPolygon::new`].
+    pub fn planar(
+        points: &[[f64; 2]],
+        parametrization: &Parametrization,
+        boundary: Boundary,
+    ) -> Result<Self, InputError> {
+        let points = points.iter().map(|p| DVec3::new(p[0], p[1], 0.0)).collect();
+        Self::with_dimension(points, Dimension::Two, parametrization, boundary)
+    }
+
+    /// Polygon through points whose third coordinate is zero when `dimension` is two.
+    ///
+    /// # Errors
+    /// As [`DataPolygon::new`].
+    pub fn with_dimension(
+        points: Vec<DVec3>,
+        dimension: Dimension,
+        parametrization: &Parametrization,
+        boundary: Boundary,
+    ) -> Result<Self, InputError> {
+        check_points(&points, boundary)?;
+        let mut directions = unit_chords(&points)?;
+        let parameters = parametrization.parameters(&points)?;
+        check_velocities(&points, &parameters)?;
+        let tangents = end_tangents(&points, &parameters, boundary)?;
+
+        let n = points.len() - 1;
+        (directions[0], directions[n + 1]) = match (boundary, tangents) {
+            (Boundary::Periodic, _) => (directions[n], directions[1]),
+            (_, Some([start, end])) => (normalize(start), normalize(end)),
+            (_, None) => (directions[1], directions[n]),
+        };
+        Ok(Self { points, parameters, directions, boundary, tangents, dimension })
+    }
+
+    /// The points `I_0 … I_N`.
+    #[must_use]
+    pub fn points(&self) -> &[DVec3] {
+        &self.points
+    }
+
+    /// The parameters `u_0 < … < u_N`.
+    #[must_use]
+    pub fn parameters(&self) -> &[f64] {
+        &self.parameters
+    }
+
+    /// The end conditions as given.
+    #[must_use]
+    pub fn boundary(&self) -> Boundary {
+        self.boundary
+    }
+
+    /// The end tangents `D_0, D_N` of a boundary that has them (given or circular).
+    #[must_use]
+    pub fn tangents(&self) -> Option<[DVec3; 2]> {
+        self.tangents
+    }
+
+    /// Whether the data are planar or spatial by type.
+    #[must_use]
+    pub fn dimension(&self) -> Dimension {
+        self.dimension
+    }
+
+    /// Whether the data are closed (periodic boundary).
+    #[must_use]
+    pub fn is_closed(&self) -> bool {
+        self.boundary == Boundary::Periodic
+    }
+
+    /// Number of segments, `N`.
+    #[must_use]
+    pub fn segments(&self) -> usize {
+        self.points.len() - 1
+    }
+
+    /// Number of distinct nodes: `N` for closed data (erratum E5), else `N + 1`.
+    #[must_use]
+    pub fn nodes(&self) -> usize {
+        if self.is_closed() { self.segments() } else { self.points.len() }
+    }
+
+    /// Spacing `h_i = u_{i+1} − u_i`.
+    #[inline]
+    #[must_use]
+    pub fn spacing(&self, segment: usize) -> f64 {
+        self.parameters[segment + 1] - self.parameters[segment]
+    }
+
+    /// Spacings `h_{i−1}` and `h_{i+1}` beside a segment; at an open end the segment's own
+    /// (paper 001, section 4).
+    #[must_use]
+    pub fn neighbour_spacings(&self, segment: usize) -> [f64; 2] {
+        let n = self.segments();
+        let (before, after) = if self.is_closed() {
+            ((segment + n - 1) % n, (segment + 1) % n)
+        } else {
+            (segment.saturating_sub(1), (segment + 1).min(n - 1))
+        };
+        [self.spacing(before), self.spacing(after)]
+    }
+
+    /// Chord `L_i = I_{i+1} − I_i`.
+    #[inline]
+    #[must_use]
+    pub fn chord(&self, segment: usize) -> DVec3 {
+        self.points[segment + 1] - self.points[segment]
+    }
+
+    /// Unit chord `l_i`.
+    #[inline]
+    #[must_use]
+    pub fn direction(&self, segment: usize) -> DVec3 {
+        self.directions[segment + 1]
+    }
+
+    /// The unit chords `l_{i−1}, l_i` that meet at a node (with the stand-ins at the ends).
+    #[inline]
+    #[must_use]
+    pub fn directions_at(&self, node: usize) -> [DVec3; 2] {
+        [self.directions[node], self.directions[node + 1]]
+    }
+
+    /// Binormal vector of the unit chords at a node, `l_{i−1} × l_i`: `P_i` scaled so that its
+    /// length is the sine of the turning angle.
+    #[inline]
+    #[must_use]
+    pub fn binormal(&self, node: usize) -> DVec3 {
+        self.directions[node].cross(self.directions[node + 1])
+    }
+
+    /// `det[l_{i−1}, l_i, l_{i+1}]` of a segment: `Γ_i` of the unit chords.
+    #[inline]
+    #[must_use]
+    pub fn gamma(&self, segment: usize) -> f64 {
+        self.binormal(segment).dot(self.directions[segment + 2])
+    }
+
+    /// Discrete torsion `Γ_i / (‖P_i‖ ‖P_{i+1}‖)` of a segment (paper 001, (2.1)), in reciprocal
+    /// units of length; NaN where a binormal vector vanishes.
+    #[must_use]
+    pub fn discrete_torsion(&self, segment: usize) -> f64 {
+        let sines = self.binormal(segment).length() * self.binormal(segment + 1).length();
+        // With lengths put back, one factor ‖L_i‖ remains in the denominator.
+        if sines == 0.0 {
+            f64::NAN
+        } else {
+            self.gamma(segment) / sines / crate::length(self.chord(segment))
+        }
+    }
+
+    /// Takes the polygon apart into points and parameters, which the curve keeps.
+    #[must_use]
+    pub fn into_points_and_parameters(self) -> (Vec<DVec3>, Vec<f64>) {
+        (self.points, self.parameters)
+    }
+}
+
+fn check_points(points: &[DVec3], boundary: Boundary) -> Result<(), InputError> {
+    let (needed, why) = match boundary {
+        Boundary::Periodic => (3, " for boundary \"periodic\""),
+        Boundary::Circular => (3, " for boundary \"circular\""),
+        _ => (2, ""),
+    };
+    if points.len() < needed {
+        let found = points.len();
+        return Err(InputError::TooFewPoints { argument: "points", needed, found, why });
+    }
+    for (index, p) in points.iter().enumerate() {
+        if !p.is_finite() {
+            let value = p.to_array().into_iter().find(|x| !x.is_finite()).unwrap_or(f64::NAN);
+            return Err(InputError::NotFinite { argument: "points", index, value });
+        }
+    }
+    let (start, end) = (points[0], points[points.len() - 1]);
+    if boundary == Boundary::Periodic && start != end {
+        return Err(InputError::NotClosed { last: points.len() - 1, start, end });
+    }
+    Ok(())
+}
+
+/// Unit chords with a free place at either end for the stand-ins.
+fn unit_chords(points: &[DVec3]) -> Result<Vec<DVec3>, InputError> {
+    let mut directions = Vec::with_capacity(points.len() + 1);
+    directions.push(DVec3::ZERO);
+    for (i, pair) in points.windows(2).enumerate() {
+        let chord = pair[1] - pair[0];
+        let direction = normalize(chord);
+        if direction == DVec3::ZERO {
+            if pair[0] == pair[1] {
+                return Err(InputError::RepeatedPoint { index: i + 1, value: pair[1] });
+            }
+            let value = crate::length(chord);
+            return Err(InputError::Overflow { index: i, what: "the chord", value });
+        }
+        directions.push(direction);
+    }
+    directions.push(DVec3::ZERO);
+    Ok(directions)
+}
+
+/// A chord over its spacing is the size of a tangent: if that overflows, so would every answer.
+fn check_velocities(points: &[DVec3], parameters: &[f64]) -> Result<(), InputError> {
+    for (i, (p, u)) in points.windows(2).zip(parameters.windows(2)).enumerate() {
+        let velocity = (p[1] - p[0]) / (u[1] - u[0]) * 6.0;
+        if !velocity.is_finite() {
+            let what = "chord over parameter spacing";
+            return Err(InputError::Overflow { index: i, what, value: f64::INFINITY });
+        }
+    }
+    Ok(())
+}
+
+fn end_tangents(
+    points: &[DVec3],
+    parameters: &[f64],
+    boundary: Boundary,
+) -> Result<Option<[DVec3; 2]>, InputError> {
+    match boundary {
+        Boundary::ZeroCurvature | Boundary::Periodic => Ok(None),
+        Boundary::Tangents { start, end } => {
+            check_tangent("start", start)?;
+            check_tangent("end", end)?;
+            Ok(Some([start, end]))
+        }
+        Boundary::Circular => {
+            let n = points.len() - 1;
+            let (first, last) =
+                (parameters[1] - parameters[0], parameters[n] - parameters[n - 1]);
+            Ok(Some([
+                circle_tangent(points[0], points[1], points[2], first),
+                -circle_tangent(points[n], points[n - 1], points[n - 2], last),
+            ]))
+        }
+    }
+}
