@@ -43,8 +43,7 @@ pub fn solve_cyclic<T: RightHandSide>(
     solve_tridiagonal(&lower[..m], &mut diagonal[..m], &upper[..m], &mut right[..m])?;
     let (from_first, from_last) = (upper[m], lower[m]);
     let pivot = diagonal[m] - from_first * column[0] - from_last * column[m - 1];
-    let last =
-        (right[m] - right[0] * from_first - right[m - 1] * from_last) / usable(m, pivot)?;
+    let last = (right[m] - right[0] * from_first - right[m - 1] * from_last) / usable(m, pivot)?;
     right[m] = last;
     for (x, c) in right[..m].iter_mut().zip(&column) {
         *x = *x - last * *c;

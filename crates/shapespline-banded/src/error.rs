@@ -27,7 +27,11 @@ pub enum SolveError {
 /// The pivot, if one can divide by it.
 #[inline]
 pub(crate) fn usable(row: usize, pivot: f64) -> Result<f64, SolveError> {
-    if pivot != 0.0 && pivot.is_finite() { Ok(pivot) } else { Err(SolveError::Pivot { row, pivot }) }
+    if pivot != 0.0 && pivot.is_finite() {
+        Ok(pivot)
+    } else {
+        Err(SolveError::Pivot { row, pivot })
+    }
 }
 
 pub(crate) fn check_length(

@@ -192,11 +192,8 @@ impl Resolvable {
                 continue;
             }
             let top = range.end.min(done);
-            let mut after = if top < n || rows.is_cyclic() {
-                self.solution[top % n]
-            } else {
-                DVec3::ZERO
-            };
+            let mut after =
+                if top < n || rows.is_cyclic() { self.solution[top % n] } else { DVec3::ZERO };
             // Counted from n·k upwards, so that a cyclic substitution can run below row 0.
             let lift = if rows.is_cyclic() { n * (limit / n + 2) } else { 0 };
             let (top, start) = (top + lift, range.start + lift);

@@ -116,7 +116,11 @@ impl<'a> ArcLength<'a> {
             if excess.abs() <= 4.0 * f64::EPSILON * whole {
                 break;
             }
-            if excess > 0.0 { high = t } else { low = t }
+            if excess > 0.0 {
+                high = t
+            } else {
+                low = t
+            }
             let newton = t - excess / crate::length(segment.derivatives(t)[0]);
             let next = if newton > low && newton < high { newton } else { 0.5 * (low + high) };
             if next == t || high - low <= f64::EPSILON {
@@ -158,7 +162,9 @@ mod tests {
             assert!((table.upto(u) - expected).abs() < 1e-13, "{u}");
             assert!((table.parameter(expected) - u).abs() < 1e-13, "{u}");
         }
-        assert!((table.between(2.5, -0.5) + parabola_length(2.5) + parabola_length(0.5)).abs() < 1e-12);
+        assert!(
+            (table.between(2.5, -0.5) + parabola_length(2.5) + parabola_length(0.5)).abs() < 1e-12
+        );
         assert_eq!(table.parameter(-1.0), 0.0);
         assert_eq!(table.parameter(100.0), 2.0);
     }
@@ -166,7 +172,8 @@ mod tests {
     #[test]
     fn a_cusp_is_measured_too() {
         // Out along x and back on the same line: γ' vanishes inside.
-        let segment = CubicSegment { start: DVec3::ZERO, a: DVec3::X, b: DVec3::ZERO, c: -DVec3::X };
+        let segment =
+            CubicSegment { start: DVec3::ZERO, a: DVec3::X, b: DVec3::ZERO, c: -DVec3::X };
         let top = segment.position(0.5).x;
         assert!((segment.arc_length(0.0, 1.0) - 2.0 * top).abs() < 1e-12);
     }

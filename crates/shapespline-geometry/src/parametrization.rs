@@ -71,10 +71,7 @@ pub(crate) fn check_increasing(argument: &'static str, u: &[f64]) -> Result<(), 
     Ok(())
 }
 
-fn accumulate(
-    points: &[DVec3],
-    spacing: impl Fn(f64) -> f64,
-) -> Result<Vec<f64>, InputError> {
+fn accumulate(points: &[DVec3], spacing: impl Fn(f64) -> f64) -> Result<Vec<f64>, InputError> {
     let mut u = Vec::with_capacity(points.len());
     let mut sum = 0.0;
     u.push(sum);
@@ -90,7 +87,12 @@ fn accumulate(
             }
             let index = i + 1;
             let (previous, value) = (sum, next);
-            return Err(InputError::NotIncreasing { argument: "parameters", index, previous, value });
+            return Err(InputError::NotIncreasing {
+                argument: "parameters",
+                index,
+                previous,
+                value,
+            });
         }
         sum = next;
         u.push(sum);

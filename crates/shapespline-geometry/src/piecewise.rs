@@ -80,7 +80,12 @@ impl PiecewiseCubic {
         }
         if knots.len() != points.len() {
             let (argument, expected, found) = ("knots", points.len(), knots.len());
-            return Err(InputError::Length { argument, expected, found, per: "one for each point" });
+            return Err(InputError::Length {
+                argument,
+                expected,
+                found,
+                per: "one for each point",
+            });
         }
         if legs.len() + 1 != points.len() {
             let (argument, expected, found) = ("legs", points.len() - 1, legs.len());
@@ -329,7 +334,8 @@ mod tests {
     fn a_planted_cubic_comes_back_from_every_evaluator() {
         let knots = [-1.0, -0.4, 0.0, 0.3, 1.5];
         let curve = planted(&knots, Domain::Open);
-        let many: Vec<f64> = (0..40_000).map(|k| -1.4 + (k * 7919 % 40_000) as f64 * 8e-5).collect();
+        let many: Vec<f64> =
+            (0..40_000).map(|k| -1.4 + (k * 7919 % 40_000) as f64 * 8e-5).collect();
         let mut sorted = many.clone();
         sorted.sort_by(f64::total_cmp);
         for queries in [&many, &sorted, &vec![0.3, -0.4, 2.0]] {

@@ -300,8 +300,7 @@ fn end_tangents(
         }
         Boundary::Circular => {
             let n = points.len() - 1;
-            let (first, last) =
-                (parameters[1] - parameters[0], parameters[n] - parameters[n - 1]);
+            let (first, last) = (parameters[1] - parameters[0], parameters[n] - parameters[n - 1]);
             Ok(Some([
                 circle_tangent(points[0], points[1], points[2], first),
                 -circle_tangent(points[n], points[n - 1], points[n - 2], last),

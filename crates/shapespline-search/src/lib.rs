@@ -1,1 +1,31 @@
-//! placeholder
+//! Automatic tension: raise it where a shape criterion fails, then relax it.
+//!
+//! One search serves every family of splines with a tension at each node. A family says how tension
+//! makes end legs ([`TensionFamily`]); the search asks the criteria where the curve fails, raises the
+//! tensions that can mend it ([`Strategy`]), has the family solve again where they changed, checks
+//! what that touched, and repeats. `Fairest` then lowers every run of tension as far as the criteria
+//! allow, for growth overshoots.
+//!
+//! **Guarantee.** A search that ends with [`Status::Solved`] ends with a complete solve and a complete
+//! check that found no fault. Convergence rests on the asymptotic theorems of the family (paper 001,
+//! Lemmas 5.4–5.9; paper 000, Lemmas 4.1–4.3); a limit of iterations guards it.
+//!
+//! **Cost.** One full solve and check first and last; between them the cost follows the number of
+//! violations, not the length of the curve.
+//!
+//! Source: M. I. Karavelas, P. D. Kaklis, Numerical Algorithms 23 (2000), section 5.2 (algorithm
+//! NUSSP), with errata E4 and E5.
+
+mod family;
+mod options;
+mod outcome;
+mod pattern;
+mod relax;
+mod runs;
+mod search;
+
+pub use family::TensionFamily;
+pub use options::{SearchOptions, Strategy};
+pub use outcome::{Diagnostics, Fit, Outcome, Phase, Status, Step};
+pub use pattern::Pattern;
+pub use search::search;

@@ -1,0 +1,167 @@
+//! What the polygon calls for: the index sets (5.34)–(5.39) of paper 001, with its zero tests made
+//! relative.
+
+use glam::DVec3;
+use shapespline_geometry::{Boundary, DataPolygon, length};
+
+use crate::{Criteria, Criterion, Tolerances};
+
+/// The conditions that a segment is asked to meet.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Calls(u8);
+
+impl Calls {
+    /// `P_m·P_{m+1} > 0`.
+    pub const CONVEXITY: Self = Self(1);
+    /// `P_m·P_{m+1} < 0`.
+    pub const INFLECTION: Self = Self(2);
+    /// `Γ_m > 0`.
+    pub const RIGHT_TORSION: Self = Self(4);
+    /// `Γ_m < 0`.
+    pub const LEFT_TORSION: Self = Self(8);
+    /// `Γ_m = 0` on a convex quadruple: near the plane on the whole segment.
+    pub const COPLANARITY: Self = Self(16);
+    /// `Γ_m = 0` on an inflecting quadruple: near the plane on two parts of the segment.
+    pub const SPLIT_COPLANARITY: Self = Self(32);
+    /// Three points on a line around the segment's first node.
+    pub const LINE_AT_START: Self = Self(64);
+    /// Three points on a line around the segment's last node.
+    pub const LINE_AT_END: Self = Self(128);
+
+    /// Whether any call of `other` is among these.
+    #[inline]
+    #[must_use]
+    pub fn any(self, other: Self) -> bool {
+        self.0 & other.0 != 0
+    }
+
+    /// Whether there is no call at all.
+    #[inline]
+    #[must_use]
+    pub fn is_empty(self) -> bool {
+        self.0 == 0
+    }
+
+    /// The calls together.
+    #[must_use]
+    pub fn and(self, other: Self) -> Self {
+        Self(self.0 | other.0)
+    }
+
+    /// Those of the calls that belong to a set of criteria.
+    #[must_use]
+    pub fn only(self, criteria: Criteria) -> Self {
+        let wanted = criteria.iter().fold(0, |bits, c| bits | Self::of(c).0);
+        Self(self.0 & wanted)
+    }
+
+    /// The calls that belong to a criterion.
+    #[must_use]
+    pub fn of(criterion: Criterion) -> Self {
+        match criterion {
+            Criterion::Convexity => Self::CONVEXITY,
+            Criterion::Inflection => Self::INFLECTION,
+            Criterion::Torsion => Self::RIGHT_TORSION.and(Self::LEFT_TORSION),
+            Criterion::Coplanarity => Self::COPLANARITY.and(Self::SPLIT_COPLANARITY),
+            Criterion::Collinearity => Self::LINE_AT_START.and(Self::LINE_AT_END),
+        }
+    }
+
+    /// What each segment of a polygon calls for. Cost O(N).
+    #[must_use]
+    pub fn of_polygon(polygon: &DataPolygon, tolerances: &Tolerances) -> Vec<Self> {
+        let mut calls: Vec<Self> =
+            (0..polygon.segments()).map(|i| of_segment(polygon, i, tolerances)).collect();
+        // Paper 001, step 0.0: in a planar polygon coplanarity is no question.
+        if !calls.iter().any(|c| c.any(Self::of(Criterion::Torsion))) {
+            let rest = !Self::of(Criterion::Coplanarity).0;
+            calls.iter_mut().for_each(|c| c.0 &= rest);
+        }
+        calls
+    }
+}
+
+fn of_segment(polygon: &DataPolygon, i: usize, tolerances: &Tolerances) -> Calls {
+    let zero = tolerances.zero;
+    let [p, q] = [polygon.binormal(i), polygon.binormal(i + 1)];
+    let sines = [p.length(), q.length()];
+    let mut calls = Calls::default();
+
+    let gamma = p.dot(polygon.directions_at(i + 1)[1]);
+    if gamma > zero {
+        calls = calls.and(Calls::RIGHT_TORSION);
+    } else if gamma < -zero {
+        calls = calls.and(Calls::LEFT_TORSION);
+    }
+
+    if sines[0] > zero && sines[1] > zero {
+        let both = sines[0] * sines[1];
+        let cosine = p.dot(q) / both;
+        // Nearly straight quadruples have a tiny Γ whatever the angle between their binormal
+        // vectors. Asking coplanarity of them is asking what the polygon itself does not meet: the
+        // binormal has to turn from P_m to P_{m+1}. (Found on points near a line.)
+        let parallel = p.cross(q).length() <= 0.5 * tolerances.coplanarity * both;
+        let flat = gamma.abs() <= zero && parallel;
+        if cosine > zero {
+            calls = calls.and(Calls::CONVEXITY);
+            if flat {
+                calls = calls.and(Calls::COPLANARITY);
+            }
+        } else if cosine < -zero {
+            calls = calls.and(Calls::INFLECTION);
+            if flat {
+                calls = calls.and(Calls::SPLIT_COPLANARITY);
+            }
+        }
+    }
+
+    let on_line = |node: usize, sine: f64| {
+        // (5.39): with zero curvature the ends have no line of their own.
+        let free = polygon.boundary() == Boundary::ZeroCurvature
+            && (node == 0 || node == polygon.segments());
+        let [before, after] = polygon.directions_at(node);
+        !free && sine <= zero && before.dot(after) > 0.0
+    };
+    if on_line(i, sines[0]) {
+        calls = calls.and(Calls::LINE_AT_START);
+    }
+    if on_line(i + 1, sines[1]) {
+        calls = calls.and(Calls::LINE_AT_END);
+    }
+    calls
+}
+
+/// Local parameter `t*` that separates the two parts of an inflecting coplanar segment: where the
+/// binormal of a ν-spline flips in the limit of equal and growing tension (paper 001, (5.9)).
+///
+/// At an end with a given tangent the limit is that of `(1 + ν_0) q_0 = D_0`; the paper's convention
+/// `L_{−1} = D_0` there depends on the unit of the parameter, so `L_{−1} = h_0 D_0/6` is taken, which
+/// gives the true limit.
+#[must_use]
+pub fn separation(polygon: &DataPolygon, segment: usize) -> f64 {
+    let n = polygon.segments();
+    let neighbour = |segment: usize, before: bool| -> f64 {
+        let end = if before { segment == 0 } else { segment + 1 == n };
+        match (end && !polygon.is_closed(), polygon.tangents()) {
+            (true, Some([start, end])) => {
+                length(if before { start } else { end }) * polygon.spacing(segment) / 6.0
+            }
+            (true, None) => length(polygon.chord(segment)),
+            (false, _) => {
+                let beside = if before { (segment + n - 1) % n } else { (segment + 1) % n };
+                length(polygon.chord(beside))
+            }
+        }
+    };
+    let [h_before, h_after] = polygon.neighbour_spacings(segment);
+    let p = polygon.binormal(segment).length() * neighbour(segment, true);
+    let q = polygon.binormal(segment + 1).length() * neighbour(segment, false);
+    1.0 / (1.0 + (q / p).sqrt() * (h_before / h_after).powf(0.75))
+}
+
+/// Direction of the plane normal of a coplanar quadruple: the mean of its two binormal directions,
+/// so that it does not depend on the direction the points are run through.
+pub(crate) fn plane_normal(p: DVec3, q: DVec3) -> DVec3 {
+    let (p, q) = (p.normalize_or_zero(), q.normalize_or_zero());
+    (if p.dot(q) < 0.0 { p - q } else { p + q }).normalize_or_zero()
+}

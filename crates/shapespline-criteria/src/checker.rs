@@ -1,0 +1,204 @@
+//! The checker: what a polygon calls for, held against segments.
+
+use glam::DVec3;
+use rayon::prelude::*;
+use shapespline_geometry::DataPolygon;
+
+use crate::{
+    Calls, Criteria, Criterion, Faults, Record, ShapeReport, Tolerances,
+    calls::{plane_normal, separation},
+    faults::{Cones, Situation, cone_faults, sign_faults},
+    margin,
+};
+
+/// Segments are checked in parallel in blocks of this many.
+const BLOCK: usize = 4096;
+
+/// The shape criteria of one data polygon.
+#[derive(Debug, Clone)]
+pub struct Checker<'a> {
+    polygon: &'a DataPolygon,
+    tolerances: Tolerances,
+    calls: Vec<Calls>,
+}
+
+impl<'a> Checker<'a> {
+    /// Finds out what each segment of the polygon calls for among `criteria`. Cost O(N).
+    #[must_use]
+    pub fn new(polygon: &'a DataPolygon, criteria: Criteria, tolerances: Tolerances) -> Self {
+        let mut calls = Calls::of_polygon(polygon, &tolerances);
+        calls.iter_mut().for_each(|c| *c = c.only(criteria));
+        Self { polygon, tolerances, calls }
+    }
+
+    /// The polygon.
+    #[must_use]
+    pub fn polygon(&self) -> &'a DataPolygon {
+        self.polygon
+    }
+
+    /// What each segment calls for.
+    #[must_use]
+    pub fn calls(&self) -> &[Calls] {
+        &self.calls
+    }
+
+    /// The exact verdict on a segment with end legs `a, c`: which conditions fail.
+    #[inline]
+    #[must_use]
+    pub fn faults(&self, segment: usize, legs: [DVec3; 2]) -> Faults {
+        let calls = self.calls[segment];
+        if calls.is_empty() {
+            return Faults::default();
+        }
+        let s = self.situation(segment, legs);
+        let faults = sign_faults(&s, calls);
+        if calls.any(Calls::of(Criterion::Coplanarity).and(Calls::of(Criterion::Collinearity))) {
+            return faults.and(cone_faults(&s, calls, &self.cones(segment, &s)));
+        }
+        faults
+    }
+
+    /// The segments that fail, ascending, with their faults. Cost O(N), on all threads for long
+    /// curves.
+    pub fn all_faults<L>(&self, legs: L) -> Vec<(usize, Faults)>
+    where
+        L: Fn(usize) -> [DVec3; 2] + Sync,
+    {
+        let of = |i: usize| {
+            let faults = self.faults(i, legs(i));
+            (!faults.is_empty()).then_some((i, faults))
+        };
+        let n = self.calls.len();
+        if n <= 2 * BLOCK {
+            (0..n).filter_map(of).collect()
+        } else {
+            (0..n).into_par_iter().with_min_len(BLOCK).filter_map(of).collect()
+        }
+    }
+
+    /// The record of one criterion on a segment: verdict, margin and place.
+    #[must_use]
+    pub fn record(&self, segment: usize, legs: [DVec3; 2], criterion: Criterion) -> Record {
+        let calls = self.calls[segment];
+        let applicable = calls.any(Calls::of(criterion));
+        let mut record = Record {
+            segment,
+            criterion,
+            applicable,
+            satisfied: true,
+            margin: f64::NAN,
+            location: f64::NAN,
+        };
+        if !applicable {
+            return record;
+        }
+        let s = self.situation(segment, legs);
+        let margin = match criterion {
+            Criterion::Convexity => margin::convexity(&s),
+            Criterion::Inflection => margin::inflection(&s),
+            Criterion::Torsion => margin::torsion(&s, calls),
+            Criterion::Coplanarity => margin::coplanarity(&s, calls, &self.cones(segment, &s)),
+            Criterion::Collinearity => margin::collinearity(&s, calls, &self.cones(segment, &s)),
+        };
+        record.satisfied = !self.faults(segment, legs).any(Faults::of(criterion));
+        record.margin = margin.value;
+        record.location =
+            self.polygon.parameters()[segment] + margin.at * self.polygon.spacing(segment);
+        record
+    }
+
+    /// The report on a curve, segment by segment. Memory follows the violations.
+    pub fn report<L>(&self, legs: L) -> ShapeReport
+    where
+        L: Fn(usize) -> [DVec3; 2] + Sync,
+    {
+        self.report_of(&self.all_faults(&legs), legs)
+    }
+
+    /// The report that belongs to faults already found (by [`Checker::all_faults`]).
+    pub fn report_of<L>(&self, faults: &[(usize, Faults)], legs: L) -> ShapeReport
+    where
+        L: Fn(usize) -> [DVec3; 2],
+    {
+        let mut report = ShapeReport::new(self.calls.len());
+        for calls in &self.calls {
+            for criterion in Criterion::ALL {
+                report.counts[criterion as usize].applicable +=
+                    usize::from(calls.any(Calls::of(criterion)));
+            }
+        }
+        for &(i, faults) in faults {
+            for criterion in Criterion::ALL {
+                if faults.any(Faults::of(criterion)) {
+                    report.counts[criterion as usize].violated += 1;
+                    report.violations.push(self.record(i, legs(i), criterion));
+                }
+            }
+        }
+        report
+    }
+
+    #[inline]
+    fn situation(&self, i: usize, legs: [DVec3; 2]) -> Situation {
+        let (p, q) = (self.polygon.binormal(i), self.polygon.binormal(i + 1));
+        Situation::new(legs, self.polygon.chord(i), p, q)
+    }
+
+    fn cones(&self, i: usize, s: &Situation) -> Cones {
+        let calls = self.calls[i];
+        let parts = if calls.any(Calls::SPLIT_COPLANARITY) {
+            let flip = separation(self.polygon, i);
+            [0.5 * flip, 0.5 * (1.0 + flip)]
+        } else {
+            [0.0, 1.0]
+        };
+        // The line of three points is known from both of its chords.
+        let line = |node: usize| {
+            let [before, after] = self.polygon.directions_at(node);
+            (before + after).normalize_or_zero()
+        };
+        Cones {
+            plane: (self.tolerances.coplanarity, plane_normal(s.p, s.q)),
+            parts,
+            line: (self.tolerances.collinearity, [line(i), line(i + 1)]),
+        }
+    }
+}
+
+/// The report on a curve through the points of a polygon, given the end legs of its segments.
+pub fn check<L>(
+    polygon: &DataPolygon,
+    legs: L,
+    criteria: Criteria,
+    tolerances: Tolerances,
+) -> ShapeReport
+where
+    L: Fn(usize) -> [DVec3; 2] + Sync,
+{
+    Checker::new(polygon, criteria, tolerances).report(legs)
+}
+
+impl Faults {
+    /// The faults of a criterion.
+    #[must_use]
+    pub const fn of(criterion: Criterion) -> Self {
+        match criterion {
+            Criterion::Convexity => {
+                Self::CONVEXITY_AT_START.and(Self::CONVEXITY_AT_END).and(Self::CONVEXITY_BETWEEN)
+            }
+            Criterion::Inflection => Self::INFLECTION_AT_START.and(Self::INFLECTION_AT_END),
+            Criterion::Torsion => Self::TORSION,
+            Criterion::Coplanarity => Self::COPLANARITY_AT_START
+                .and(Self::COPLANARITY_AT_END)
+                .and(Self::COPLANARITY_BETWEEN)
+                .and(Self::COPLANARITY_SPLIT),
+            Criterion::Collinearity => Self::LINE_AT_START
+                .and(Self::LINE_AFTER_START)
+                .and(Self::LINE_INSIDE_START)
+                .and(Self::LINE_AT_END)
+                .and(Self::LINE_BEFORE_END)
+                .and(Self::LINE_INSIDE_END),
+        }
+    }
+}

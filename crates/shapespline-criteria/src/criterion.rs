@@ -1,0 +1,130 @@
+//! The criteria by name, sets of them, and their tolerances.
+
+use shapespline_geometry::InputError;
+
+/// A shape criterion.
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Serialize, serde::Deserialize,
+)]
+#[serde(rename_all = "kebab-case")]
+pub enum Criterion {
+    /// The curve turns as the polygon does, seen along both binormal vectors.
+    Convexity,
+    /// The curve has exactly the inflection of the polygon.
+    Inflection,
+    /// The curve twists as the polygon does.
+    Torsion,
+    /// Near a plane where four points lie in one.
+    Coplanarity,
+    /// Near a line where three points lie on one.
+    Collinearity,
+}
+
+impl Criterion {
+    /// All criteria, in the order of reports.
+    pub const ALL: [Self; 5] =
+        [Self::Convexity, Self::Inflection, Self::Torsion, Self::Coplanarity, Self::Collinearity];
+
+    /// The name users write.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Convexity => "convexity",
+            Self::Inflection => "inflection",
+            Self::Torsion => "torsion",
+            Self::Coplanarity => "coplanarity",
+            Self::Collinearity => "collinearity",
+        }
+    }
+
+    /// The criterion of a name.
+    #[must_use]
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|c| c.name() == name)
+    }
+}
+
+impl std::fmt::Display for Criterion {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.pad(self.name())
+    }
+}
+
+/// A set of criteria.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+pub struct Criteria(u8);
+
+impl Criteria {
+    /// No criterion.
+    pub const NONE: Self = Self(0);
+    /// The default: every criterion there is here.
+    pub const ALL: Self = Self(0b1_1111);
+
+    /// Whether the set holds a criterion.
+    #[must_use]
+    pub fn contains(self, criterion: Criterion) -> bool {
+        self.0 & (1 << criterion as u8) != 0
+    }
+
+    /// The set with one more criterion.
+    #[must_use]
+    pub fn with(self, criterion: Criterion) -> Self {
+        Self(self.0 | 1 << criterion as u8)
+    }
+
+    /// The criteria of the set.
+    pub fn iter(self) -> impl Iterator<Item = Criterion> {
+        Criterion::ALL.into_iter().filter(move |&c| self.contains(c))
+    }
+}
+
+impl Default for Criteria {
+    fn default() -> Self {
+        Self::ALL
+    }
+}
+
+impl FromIterator<Criterion> for Criteria {
+    fn from_iter<I: IntoIterator<Item = Criterion>>(criteria: I) -> Self {
+        criteria.into_iter().fold(Self::NONE, Self::with)
+    }
+}
+
+/// What counts as near a plane, near a line, and zero.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Tolerances {
+    /// `ε₁ ∈ (0, 1]`: sine of the largest angle between binormal and plane normal.
+    pub coplanarity: f64,
+    /// `ε₀ ∈ (0, 1]`: sine of the largest angle between tangent and line.
+    pub collinearity: f64,
+    /// Sine below which points count as collinear (turning angle), coplanar (`Γ` of unit chords)
+    /// and binormal vectors as perpendicular; in `[0, 1)`.
+    pub zero: f64,
+}
+
+impl Default for Tolerances {
+    fn default() -> Self {
+        Self { coplanarity: 0.2, collinearity: 0.2, zero: 1e-9 }
+    }
+}
+
+impl Tolerances {
+    /// Checks the ranges.
+    ///
+    /// # Errors
+    /// A value outside its range, NaN included.
+    pub fn validate(self) -> Result<Self, InputError> {
+        let angle = |argument, value: f64| {
+            let allowed = "a sine in (0, 1]";
+            let valid = value > 0.0 && value <= 1.0;
+            if valid { Ok(()) } else { Err(InputError::Scalar { argument, value, allowed }) }
+        };
+        angle("coplanarity", self.coplanarity)?;
+        angle("collinearity", self.collinearity)?;
+        if !(0.0..1.0).contains(&self.zero) {
+            let (argument, value) = ("tolerance", self.zero);
+            return Err(InputError::Scalar { argument, value, allowed: "in [0, 1)" });
+        }
+        Ok(self)
+    }
+}

@@ -1,0 +1,228 @@
+//! The verdict on one segment: which of the exact conditions fail.
+
+use glam::DVec3;
+use shapespline_geometry::bernstein::{
+    multiply_quadratics, positivity, quadratic_is_positive, restrict,
+};
+
+use crate::Calls;
+
+/// The conditions that fail on a segment `m`, as the failure sets (5.40)–(5.57) of paper 001
+/// (corrected by E3) and Theorems 13.6–13.11 of paper 002 distinguish them: the place of a failure
+/// decides which tensions can mend it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
+pub struct Faults(u16);
+
+impl Faults {
+    /// Convexity, at node m: `ω(u_m)·P_n ≤ 0` (K₀₁).
+    pub const CONVEXITY_AT_START: Self = Self(1);
+    /// Convexity, at node m+1 (K₀₂).
+    pub const CONVEXITY_AT_END: Self = Self(2);
+    /// Convexity, between the nodes (K₀₃).
+    pub const CONVEXITY_BETWEEN: Self = Self(4);
+    /// Inflection, at node m.
+    pub const INFLECTION_AT_START: Self = Self(8);
+    /// Inflection, at node m+1.
+    pub const INFLECTION_AT_END: Self = Self(16);
+    /// Torsion (I₁₁).
+    pub const TORSION: Self = Self(32);
+    /// Coplanarity, at node m (M₀₁, M₁₁).
+    pub const COPLANARITY_AT_START: Self = Self(64);
+    /// Coplanarity, at node m+1 (M₀₂, M₂₂).
+    pub const COPLANARITY_AT_END: Self = Self(128);
+    /// Coplanarity of a convex quadruple, between the nodes (M₀₃).
+    pub const COPLANARITY_BETWEEN: Self = Self(256);
+    /// Coplanarity of an inflecting quadruple, between the nodes (M₁₂, M₁₃, M₂₁, M₂₃).
+    pub const COPLANARITY_SPLIT: Self = Self(512);
+    /// Collinearity at node m, at the node itself (J₀₁).
+    pub const LINE_AT_START: Self = Self(1024);
+    /// Collinearity at node m, at the far end of its interval (J₂₁).
+    pub const LINE_AFTER_START: Self = Self(2048);
+    /// Collinearity at node m, inside its interval (J₂₂).
+    pub const LINE_INSIDE_START: Self = Self(4096);
+    /// Collinearity at node m+1, at the node itself (J₀₁).
+    pub const LINE_AT_END: Self = Self(8192);
+    /// Collinearity at node m+1, at the far end of its interval (J₁₁).
+    pub const LINE_BEFORE_END: Self = Self(16384);
+    /// Collinearity at node m+1, inside its interval (J₁₂).
+    pub const LINE_INSIDE_END: Self = Self(32768);
+
+    /// Whether nothing fails.
+    #[inline]
+    #[must_use]
+    pub fn is_empty(self) -> bool {
+        self.0 == 0
+    }
+
+    /// Whether any fault of `other` is among these.
+    #[inline]
+    #[must_use]
+    pub fn any(self, other: Self) -> bool {
+        self.0 & other.0 != 0
+    }
+
+    /// The faults together.
+    #[inline]
+    #[must_use]
+    pub const fn and(self, other: Self) -> Self {
+        Self(self.0 | other.0)
+    }
+
+    #[inline]
+    fn add(&mut self, fault: Self, fails: bool) {
+        if fails {
+            self.0 |= fault.0;
+        }
+    }
+}
+
+/// A segment and the polygon around it, as the conditions see them: all products of legs at once.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Situation {
+    /// End legs and chord, brought to a common scale near one.
+    pub(crate) a: DVec3,
+    pub(crate) c: DVec3,
+    pub(crate) chord: DVec3,
+    /// `a×b`, `a×c`, `b×c`.
+    pub(crate) omega: [DVec3; 3],
+    /// Binormal vectors of unit chords at the two nodes.
+    pub(crate) p: DVec3,
+    pub(crate) q: DVec3,
+}
+
+impl Situation {
+    #[inline]
+    pub(crate) fn new([a, c]: [DVec3; 2], chord: DVec3, p: DVec3, q: DVec3) -> Self {
+        let size = chord.abs().max_element();
+        let (a, c, chord) = if (1e-40..1e40).contains(&size) {
+            (a, c, chord)
+        } else {
+            (a / size, c / size, chord / size)
+        };
+        // With b = L − a − c: a×b = a×L − a×c, b×c = L×c − a×c.
+        let middle = a.cross(c);
+        let omega = [a.cross(chord) - middle, middle, chord.cross(c) - middle];
+        Self { a, c, chord, omega, p, q }
+    }
+
+    /// `ω·n` as `[α, γ, β]` of Lemma 5.1.
+    #[inline]
+    pub(crate) fn omega_along(&self, n: DVec3) -> [f64; 3] {
+        self.omega.map(|w| w.dot(n))
+    }
+
+    /// `det[a, b, c]`: with b = L − a − c it is `det[a, L, c]`.
+    #[inline]
+    pub(crate) fn determinant(&self) -> f64 {
+        self.a.cross(self.chord).dot(self.c)
+    }
+
+    /// Bernstein coefficients of `ψ` for the sine `ε` and the unit normal `n`:
+    /// `ε²‖ω‖² − ‖ω × n‖²` (paper 001, (5.10)), a quartic.
+    pub(crate) fn psi(&self, epsilon: f64, n: DVec3) -> [f64; 5] {
+        let [first, middle, last] = self.omega;
+        cone([first, middle * 0.5, last], epsilon, n)
+    }
+
+    /// Bernstein coefficients of `φ` for the sine `ε` and the unit direction `l`:
+    /// `ε²‖γ'‖² − ‖γ' × l‖²` (paper 001, (5.22)), a quartic.
+    pub(crate) fn phi(&self, epsilon: f64, l: DVec3) -> [f64; 5] {
+        cone([self.a, self.chord - self.a - self.c, self.c], epsilon, l)
+    }
+}
+
+/// `ε²‖v‖² − ‖v × n‖²` for a vector quadratic `v` in Bernstein form: positive where `v` lies inside
+/// the double cone around `n` whose half angle has the sine `ε`.
+fn cone(v: [DVec3; 3], epsilon: f64, n: DVec3) -> [f64; 5] {
+    let across = v.map(|x| x.cross(n));
+    let along = v.map(|x| x.dot(n));
+    // ε²‖v‖² = ε²(‖v×n‖² + (v·n)²): no difference of nearly equal squares.
+    let square = |f: fn(DVec3) -> f64, v: [DVec3; 3]| {
+        let v = v.map(f);
+        multiply_quadratics(v, v)
+    };
+    let (x, y, z) = (square(|v| v.x, across), square(|v| v.y, across), square(|v| v.z, across));
+    let along = multiply_quadratics(along, along);
+    let (inside, outside) = (epsilon * epsilon, (1.0 - epsilon) * (1.0 + epsilon));
+    std::array::from_fn(|i| inside * along[i] - outside * (x[i] + y[i] + z[i]))
+}
+
+/// What the coplanarity and collinearity conditions need beyond the legs.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Cones {
+    /// `ε₁` and the plane normal.
+    pub(crate) plane: (f64, DVec3),
+    /// `t^ℓ, t^r`: the parts `[0, t^ℓ]` and `[t^r, 1]` of a split coplanarity.
+    pub(crate) parts: [f64; 2],
+    /// `ε₀` and the line directions at the two nodes.
+    pub(crate) line: (f64, [DVec3; 2]),
+}
+
+/// Collinearity is asked on this part of a segment next to the node.
+pub(crate) const LINE_PART: f64 = 0.5;
+
+/// The faults of convexity, inflection and torsion.
+#[inline]
+pub(crate) fn sign_faults(s: &Situation, calls: Calls) -> Faults {
+    let mut faults = Faults::default();
+    if calls.any(Calls::CONVEXITY.and(Calls::INFLECTION)) {
+        let ([a0, g0, b0], [a1, g1, b1]) = (s.omega_along(s.p), s.omega_along(s.q));
+        if calls.any(Calls::CONVEXITY) {
+            // Written so that a NaN fails.
+            let (start, end) = (a0 > 0.0 && a1 > 0.0, b0 > 0.0 && b1 > 0.0);
+            faults.add(Faults::CONVEXITY_AT_START, !start);
+            faults.add(Faults::CONVEXITY_AT_END, !end);
+            let between = quadratic_is_positive(a0, g0, b0) && quadratic_is_positive(a1, g1, b1);
+            faults.add(Faults::CONVEXITY_BETWEEN, start && end && !between);
+        } else {
+            faults.add(Faults::INFLECTION_AT_START, !(a0 > 0.0 && a1 < 0.0));
+            faults.add(Faults::INFLECTION_AT_END, !(b0 < 0.0 && b1 > 0.0));
+        }
+    }
+    if calls.any(Calls::RIGHT_TORSION) {
+        faults.add(Faults::TORSION, !(s.determinant() > 0.0));
+    } else if calls.any(Calls::LEFT_TORSION) {
+        faults.add(Faults::TORSION, !(s.determinant() < 0.0));
+    }
+    faults
+}
+
+/// The faults of coplanarity and collinearity.
+pub(crate) fn cone_faults(s: &Situation, calls: Calls, cones: &Cones) -> Faults {
+    let mut faults = Faults::default();
+    if calls.any(Calls::COPLANARITY.and(Calls::SPLIT_COPLANARITY)) {
+        let psi = s.psi(cones.plane.0, cones.plane.1);
+        let (start, end) = (psi[0] > 0.0, psi[4] > 0.0);
+        faults.add(Faults::COPLANARITY_AT_START, !start);
+        faults.add(Faults::COPLANARITY_AT_END, !end);
+        if calls.any(Calls::COPLANARITY) {
+            let between = start && end && !positivity(psi).holds();
+            faults.add(Faults::COPLANARITY_BETWEEN, between);
+        } else {
+            // A failure at the node itself is the fault above; here it is the rest of each part.
+            let [left, right] = cones.parts;
+            let (first, last) = (restrict(psi, 0.0, left), restrict(psi, right, 1.0));
+            let inner = |part: [f64; 5], node: f64, far: f64| {
+                !(far > 0.0) || (node > 0.0 && !positivity(part).holds())
+            };
+            let split = inner(first, first[0], first[4]) || inner(last, last[4], last[0]);
+            faults.add(Faults::COPLANARITY_SPLIT, split);
+        }
+    }
+    let (epsilon, lines) = cones.line;
+    if calls.any(Calls::LINE_AT_START) {
+        let phi = restrict(s.phi(epsilon, lines[0]), 0.0, LINE_PART);
+        let (node, far) = (phi[0] > 0.0, phi[4] > 0.0);
+        faults.add(Faults::LINE_AT_START, !node);
+        faults.add(Faults::LINE_AFTER_START, !far);
+        faults.add(Faults::LINE_INSIDE_START, node && far && !positivity(phi).holds());
+    }
+    if calls.any(Calls::LINE_AT_END) {
+        let phi = restrict(s.phi(epsilon, lines[1]), 1.0 - LINE_PART, 1.0);
+        let (far, node) = (phi[0] > 0.0, phi[4] > 0.0);
+        faults.add(Faults::LINE_AT_END, !node);
+        faults.add(Faults::LINE_BEFORE_END, !far);
+        faults.add(Faults::LINE_INSIDE_END, node && far && !positivity(phi).holds());
+    }
+    faults
+}

@@ -1,0 +1,113 @@
+//! How far a segment is from failing a criterion: signed, scale-free margins.
+//!
+//! | criterion | margin |
+//! |---|---|
+//! | convexity | least of the cosines between `ω` and `P_n` at the ends, and of Lemma 5.1's middle condition over the sizes in it |
+//! | inflection | least of the four cosines, with the signs asked for |
+//! | torsion | `±det[a, L, c] / (‖a‖‖L‖‖c‖)` |
+//! | coplanarity, collinearity | `ε` less the sine of the largest angle |
+//!
+//! All lie in `[−1, 1]`, are positive exactly when the condition holds, and are continuous in the
+//! data wherever the vectors in them do not vanish.
+
+use glam::DVec3;
+use shapespline_geometry::bernstein::{Positivity, positivity, quadratic_minimum, restrict};
+
+use crate::{
+    Calls,
+    faults::{Cones, LINE_PART, Situation},
+};
+
+/// A margin and the local parameter where it is smallest.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Margin {
+    pub(crate) value: f64,
+    pub(crate) at: f64,
+}
+
+impl Margin {
+    fn least(self, other: Self) -> Self {
+        if other.value < self.value { other } else { self }
+    }
+}
+
+/// `x / size`, where a vanishing size leaves nothing to be positive.
+fn ratio(x: f64, size: f64) -> f64 {
+    if size > 0.0 { x / size } else { 0.0 }
+}
+
+pub(crate) fn convexity(s: &Situation) -> Margin {
+    let sizes = s.omega.map(DVec3::length);
+    [s.p, s.q]
+        .map(|n| {
+            let [alpha, gamma, beta] = s.omega_along(n.normalize_or_zero());
+            let geometric = alpha.max(0.0).sqrt() * beta.max(0.0).sqrt();
+            let between =
+                ratio(2.0 * geometric + gamma, 2.0 * sizes[0].sqrt() * sizes[2].sqrt() + sizes[1]);
+            Margin { value: ratio(alpha, sizes[0]), at: 0.0 }
+                .least(Margin { value: ratio(beta, sizes[2]), at: 1.0 })
+                .least(Margin { value: between, at: quadratic_minimum(alpha, gamma, beta) })
+        })
+        .into_iter()
+        .reduce(Margin::least)
+        .unwrap_or(Margin { value: f64::NAN, at: 0.0 })
+}
+
+pub(crate) fn inflection(s: &Situation) -> Margin {
+    let [first, _, last] = s.omega;
+    let cosine = |w: DVec3, n: DVec3| ratio(w.dot(n.normalize_or_zero()), w.length());
+    Margin { value: cosine(first, s.p).min(-cosine(first, s.q)), at: 0.0 }
+        .least(Margin { value: (-cosine(last, s.p)).min(cosine(last, s.q)), at: 1.0 })
+}
+
+pub(crate) fn torsion(s: &Situation, calls: Calls) -> Margin {
+    let size = s.a.length() * s.chord.length() * s.c.length();
+    let sign = if calls.any(Calls::RIGHT_TORSION) { 1.0 } else { -1.0 };
+    // Its sign is the same all over the segment.
+    Margin { value: sign * ratio(s.determinant(), size), at: 0.5 }
+}
+
+pub(crate) fn coplanarity(s: &Situation, calls: Calls, cones: &Cones) -> Margin {
+    let (epsilon, normal) = cones.plane;
+    let psi = |epsilon: f64| s.psi(epsilon, normal);
+    if calls.any(Calls::COPLANARITY) {
+        cone_margin(epsilon, (0.0, 1.0), psi)
+    } else {
+        let [left, right] = cones.parts;
+        cone_margin(epsilon, (0.0, left), psi).least(cone_margin(epsilon, (right, 1.0), psi))
+    }
+}
+
+pub(crate) fn collinearity(s: &Situation, calls: Calls, cones: &Cones) -> Margin {
+    let (epsilon, lines) = cones.line;
+    let at = |line: DVec3, part: (f64, f64)| cone_margin(epsilon, part, |e| s.phi(e, line));
+    let start = calls.any(Calls::LINE_AT_START).then(|| at(lines[0], (0.0, LINE_PART)));
+    let end = calls.any(Calls::LINE_AT_END).then(|| at(lines[1], (1.0 - LINE_PART, 1.0)));
+    [start, end]
+        .into_iter()
+        .flatten()
+        .reduce(Margin::least)
+        .unwrap_or(Margin { value: f64::NAN, at: 0.0 })
+}
+
+/// `ε` less the sine of the half angle of the narrowest cone that holds the vector on a part of the
+/// segment. The verdict at `ε` comes first, and decides the sign; bisection then finds the sine.
+fn cone_margin(epsilon: f64, (from, to): (f64, f64), quartic: impl Fn(f64) -> [f64; 5]) -> Margin {
+    let verdict = |sine: f64| positivity(restrict(quartic(sine), from, to));
+    let holds = verdict(epsilon).holds();
+    let (mut inside, mut outside) = if holds { (0.0, epsilon) } else { (epsilon, 1.0) };
+    let mut at = from;
+    for _ in 0..52 {
+        let middle = 0.5 * (inside + outside);
+        match verdict(middle) {
+            Positivity::Positive => outside = middle,
+            Positivity::Fails { at: t } | Positivity::Undecided { at: t } => {
+                inside = middle;
+                at = from + t * (to - from);
+            }
+        }
+    }
+    // On its own side of zero, whatever the rounding of the bisection.
+    let value = if holds { (epsilon - outside).max(f64::MIN_POSITIVE) } else { epsilon - inside };
+    Margin { value, at }
+}

@@ -1,0 +1,75 @@
+//! What a search did.
+
+use shapespline_criteria::Faults;
+
+/// How a search ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Status {
+    /// Every criterion holds, by a complete solve and check at the end.
+    Solved,
+    /// The limit of iterations was reached first.
+    IterationLimit,
+    /// The caller's monitor asked to stop.
+    Interrupted,
+}
+
+/// What a step of the search did.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Phase {
+    /// Tension was raised where criteria failed.
+    Raise,
+    /// Runs of tension were lowered.
+    Relax,
+    /// Everything was solved and checked anew.
+    Verify,
+}
+
+/// One step of the history.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Step {
+    /// What the step did.
+    pub phase: Phase,
+    /// Segments that violated a criterion when it began.
+    pub violated: usize,
+    /// Nodes whose tension it changed.
+    pub changed: usize,
+}
+
+/// Counts of the work done.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+pub struct Diagnostics {
+    /// How the search ended.
+    pub status: Status,
+    /// Checks of the curve while raising, the last one (that found no fault) included.
+    pub iterations: usize,
+    /// Solves, complete or in part.
+    pub solves: usize,
+    /// Rounds of relaxation.
+    pub relaxations: usize,
+    /// Nodes whose tension is not zero in the end.
+    pub nodes_changed: usize,
+}
+
+/// Diagnostics, history, and what still fails.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Outcome {
+    /// Counts of the work done.
+    pub diagnostics: Diagnostics,
+    /// The steps in order.
+    pub history: Vec<Step>,
+    /// Segments that fail still, with their faults: empty when solved.
+    pub faults: Vec<(usize, Faults)>,
+}
+
+/// A curve together with how it was found and what a check says of it.
+#[derive(Debug, Clone)]
+pub struct Fit<C> {
+    /// The curve.
+    pub curve: C,
+    /// How it was found; see the status before trusting the curve.
+    pub outcome: Outcome,
+    /// The last complete check.
+    pub report: shapespline_criteria::ShapeReport,
+}

@@ -1,0 +1,52 @@
+//! Which tensions mend which fault: the increase patterns of paper 001, (5.58)–(5.60).
+
+use shapespline_criteria::Faults;
+
+/// Nodes around segment `m` whose tension is to be raised, as offsets `−1, 0, 1, 2` from `m`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Pattern {
+    /// Whether node `m + k − 1` is to be raised.
+    pub raise: [bool; 4],
+    /// Whether the tensions at nodes `m` and `m + 1` are to be kept equal (5.65).
+    pub equal: bool,
+}
+
+impl Pattern {
+    /// The pattern that mends the faults of a segment.
+    ///
+    /// A fault between the nodes, of torsion, or of a split coplanarity needs all four nodes; one at
+    /// node m needs its neighbours m−1 and m+1 (Lemma 5.4), one at node m+1 needs m and m+2; the
+    /// inflection conditions are conditions at the nodes. A fault of collinearity away from its node
+    /// needs the two nodes of that segment, or all three nodes around (Lemma 5.9).
+    #[must_use]
+    pub fn of(faults: Faults) -> Self {
+        const ALL: Faults = Faults::CONVEXITY_BETWEEN
+            .and(Faults::TORSION)
+            .and(Faults::COPLANARITY_BETWEEN)
+            .and(Faults::COPLANARITY_SPLIT);
+        const AT_START: Faults = Faults::CONVEXITY_AT_START
+            .and(Faults::INFLECTION_AT_START)
+            .and(Faults::COPLANARITY_AT_START)
+            .and(Faults::LINE_AT_START);
+        const AT_END: Faults = Faults::CONVEXITY_AT_END
+            .and(Faults::INFLECTION_AT_END)
+            .and(Faults::COPLANARITY_AT_END)
+            .and(Faults::LINE_AT_END);
+        // Both nodes of the segment, whichever of its ends the line belongs to.
+        const FAR: Faults = Faults::LINE_AFTER_START.and(Faults::LINE_BEFORE_END);
+
+        let (all, start, end) = (faults.any(ALL), faults.any(AT_START), faults.any(AT_END));
+        let far = faults.any(FAR);
+        let inside_start = faults.any(Faults::LINE_INSIDE_START);
+        let inside_end = faults.any(Faults::LINE_INSIDE_END);
+        Self {
+            raise: [
+                all || start || inside_start,
+                all || end || far || inside_start || inside_end,
+                all || start || far || inside_start || inside_end,
+                all || end || inside_end,
+            ],
+            equal: faults.any(Faults::COPLANARITY_SPLIT),
+        }
+    }
+}

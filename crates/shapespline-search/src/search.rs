@@ -1,0 +1,240 @@
+//! The search: solve, check, raise; at the end solve and check everything anew.
+
+use std::ops::{ControlFlow, Range};
+
+use shapespline_criteria::{Checker, Faults};
+
+use crate::{
+    Diagnostics, Outcome, Pattern, Phase, SearchOptions, Status, Step, Strategy, TensionFamily,
+    relax::relax,
+};
+
+/// Searches for tensions under which a family's curve keeps the shape of its data.
+///
+/// `monitor` sees every step and can end the search; the curve is then what it is at that moment, and
+/// the status says so.
+///
+/// # Errors
+/// Those of the family's solver.
+pub fn search<F: TensionFamily>(
+    family: &mut F,
+    checker: &Checker<'_>,
+    options: &SearchOptions,
+    monitor: &mut dyn FnMut(&Step) -> ControlFlow<()>,
+) -> Result<Outcome, F::Error> {
+    let mut state = State::new(family, checker, monitor);
+    let mut status = state.raise(options)?;
+    if status == Status::Solved && options.strategy == Strategy::Fairest && !state.untouched() {
+        relax(&mut state)?;
+        status = state.verify(options)?;
+    } else if status == Status::Solved && !state.untouched() {
+        status = state.verify(options)?;
+    }
+    if state.stopped {
+        status = Status::Interrupted;
+    }
+    Ok(state.outcome(status))
+}
+
+/// The family, the checker, and what is known to fail.
+pub(crate) struct State<'s, 'p, F> {
+    pub(crate) family: &'s mut F,
+    checker: &'s Checker<'p>,
+    monitor: &'s mut dyn FnMut(&Step) -> ControlFlow<()>,
+    /// Segments that fail, ascending.
+    faults: Vec<(usize, Faults)>,
+    /// Ranges of segments that the last solve touched, ascending and disjoint.
+    touched: Vec<Range<usize>>,
+    history: Vec<Step>,
+    iterations: usize,
+    solves: usize,
+    pub(crate) relaxations: usize,
+    /// Whether the monitor asked to stop.
+    pub(crate) stopped: bool,
+}
+
+impl<'s, 'p, F: TensionFamily> State<'s, 'p, F> {
+    fn new(
+        family: &'s mut F,
+        checker: &'s Checker<'p>,
+        monitor: &'s mut dyn FnMut(&Step) -> ControlFlow<()>,
+    ) -> Self {
+        let faults = checker.all_faults(|i| family.end_legs(i));
+        Self {
+            family,
+            checker,
+            monitor,
+            faults,
+            touched: Vec::new(),
+            history: Vec::new(),
+            iterations: 1,
+            solves: 1,
+            relaxations: 0,
+            stopped: false,
+        }
+    }
+
+    /// Whether the data are closed.
+    pub(crate) fn closed(&self) -> bool {
+        self.checker.polygon().is_closed()
+    }
+
+    /// Segments that fail, ascending, with their faults.
+    pub(crate) fn faults(&self) -> &[(usize, Faults)] {
+        &self.faults
+    }
+
+    fn untouched(&self) -> bool {
+        self.history.is_empty()
+    }
+
+    /// Raises tension until nothing fails.
+    fn raise(&mut self, options: &SearchOptions) -> Result<Status, F::Error> {
+        while !self.faults.is_empty() && !self.stopped {
+            if self.iterations >= options.limit() {
+                return Ok(Status::IterationLimit);
+            }
+            let changes = self.raised(options);
+            let violated = self.faults.len();
+            self.set_tension(&changes)?;
+            self.iterations += 1;
+            self.log(Phase::Raise, violated, changes.len());
+        }
+        Ok(Status::Solved)
+    }
+
+    /// Solves and checks everything anew; raises again in the (unseen) case that something fails.
+    fn verify(&mut self, options: &SearchOptions) -> Result<Status, F::Error> {
+        loop {
+            self.family.solve_again()?;
+            self.solves += 1;
+            let family = &*self.family;
+            self.faults = self.checker.all_faults(|i| family.end_legs(i));
+            self.log(Phase::Verify, self.faults.len(), 0);
+            if self.faults.is_empty() {
+                return Ok(Status::Solved);
+            }
+            match self.raise(options)? {
+                Status::Solved if !self.stopped => {}
+                status => return Ok(status),
+            }
+        }
+    }
+
+    /// The changes of tension that the faults call for: (5.58)–(5.65), with the index m + k (E4).
+    fn raised(&self, options: &SearchOptions) -> Vec<(usize, f64)> {
+        let tension = self.family.tension();
+        let n = tension.len();
+        let node = |at: usize, offset: usize| -> Option<usize> {
+            // Offsets count from −1.
+            if self.closed() {
+                Some((at + n + offset - 1) % n)
+            } else {
+                (at + offset).checked_sub(1).filter(|&i| i < n)
+            }
+        };
+        let mut changes = Vec::new();
+        let mut equal = Vec::new();
+        for &(segment, faults) in &self.faults {
+            let pattern = Pattern::of(faults);
+            for (offset, _) in pattern.raise.iter().enumerate().filter(|(_, raise)| **raise) {
+                if let Some(i) = node(segment, offset) {
+                    changes.push((i, options.raised(tension[i])));
+                }
+            }
+            if pattern.equal {
+                equal.push(segment);
+            }
+        }
+        changes.sort_unstable_by_key(|c| c.0);
+        changes.dedup_by_key(|c| c.0);
+        // (5.65): over a run of non-convex coplanar segments the tension is one and the same.
+        for run in consecutive(&equal, self.closed().then_some(n)) {
+            let nodes = || run.iter().flat_map(|&m| [m % n, (m + 1) % n]);
+            let largest = nodes().map(|i| tension[i]).fold(0.0, f64::max);
+            for i in nodes() {
+                if let Ok(at) = changes.binary_search_by_key(&i, |c| c.0) {
+                    changes[at].1 = options.raised(largest);
+                }
+            }
+        }
+        changes
+    }
+
+    /// Sets tensions (ascending by node), solves where that matters, and checks what it touched.
+    pub(crate) fn set_tension(&mut self, changes: &[(usize, f64)]) -> Result<(), F::Error> {
+        self.touched.clear();
+        self.family.set_tension(changes, &mut self.touched)?;
+        self.solves += 1;
+        merge(&mut self.touched);
+        let touched = &self.touched;
+        self.faults.retain(|(i, _)| {
+            let after = touched.partition_point(|r| r.start <= *i);
+            after == 0 || *i >= touched[after - 1].end
+        });
+        let untouched = self.faults.len();
+        for i in touched.iter().flat_map(Clone::clone) {
+            let faults = self.checker.faults(i, self.family.end_legs(i));
+            if !faults.is_empty() {
+                self.faults.push((i, faults));
+            }
+        }
+        if untouched > 0 {
+            self.faults.sort_unstable_by_key(|f| f.0);
+        }
+        Ok(())
+    }
+
+    /// Adds a step to the history and shows it to the monitor.
+    pub(crate) fn log(&mut self, phase: Phase, violated: usize, changed: usize) {
+        let step = Step { phase, violated, changed };
+        self.stopped |= (self.monitor)(&step).is_break();
+        self.history.push(step);
+    }
+
+    fn outcome(self, status: Status) -> Outcome {
+        let diagnostics = Diagnostics {
+            status,
+            iterations: self.iterations,
+            solves: self.solves,
+            relaxations: self.relaxations,
+            nodes_changed: self.family.tension().iter().filter(|&&t| t > 0.0).count(),
+        };
+        Outcome { diagnostics, history: self.history, faults: self.faults }
+    }
+}
+
+/// Maximal runs of consecutive numbers in an ascending list; in a cycle of length `n` the last run
+/// joins the first where they meet (paper 001, (5.63)–(5.64), modulo N by E5).
+fn consecutive(list: &[usize], cycle: Option<usize>) -> Vec<Vec<usize>> {
+    let mut runs: Vec<Vec<usize>> = Vec::new();
+    for &m in list {
+        match runs.last_mut() {
+            Some(run) if run.last() == Some(&(m.wrapping_sub(1))) => run.push(m),
+            _ => runs.push(vec![m]),
+        }
+    }
+    if let Some(n) = cycle
+        && runs.len() > 1
+        && runs[0][0] == 0
+        && list.last() == Some(&(n - 1))
+    {
+        let head = runs.remove(0);
+        if let Some(tail) = runs.last_mut() {
+            tail.extend(head);
+        }
+    }
+    runs
+}
+
+/// Sorts ranges and joins those that meet.
+fn merge(ranges: &mut Vec<Range<usize>>) {
+    ranges.sort_unstable_by_key(|r| r.start);
+    ranges.dedup_by(|next, kept| {
+        let meets = next.start <= kept.end;
+        if meets {
+            kept.end = kept.end.max(next.end);
+        }
+        meets
+    });
+}
