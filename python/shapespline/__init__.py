@@ -2,7 +2,7 @@
 
 >>> import shapespline as ss
 >>> points = [[0, 0, 0], [4, 0, 0], [4.5, 0.5, 0], [4.5, 1, 0.5], [4.5, 1, 5]]
->>> curve = ss.NuSpline.shape_preserving(points)
+>>> curve = ss.NuSpline.shape_preserving(points, "uniform")
 >>> curve.check().ok
 True
 >>> curve([0.0, 4.0]).shape

@@ -23,7 +23,7 @@ class ConvergenceError(RuntimeError):
     >>> import shapespline as ss
     >>> points = [[0, 0, 0], [4, 0, 0], [4.5, 0.5, 0], [4.5, 1, 0.5], [4.5, 1, 5]]
     >>> try:
-    ...     ss.NuSpline.shape_preserving(points, max_iterations=1)
+    ...     ss.NuSpline.shape_preserving(points, "uniform", max_iterations=1)
     ... except ss.ConvergenceError as error:
     ...     print(len(error.report.violations), error.curve.tension)
     4 [0. 0. 0. 0. 0.]

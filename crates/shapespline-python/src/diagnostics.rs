@@ -30,8 +30,8 @@ pub(crate) struct Search {
 /// --------
 /// >>> import shapespline as ss
 /// >>> points = [[0, 0, 0], [4, 0, 0], [4.5, 0.5, 0], [4.5, 1, 0.5], [4.5, 1, 5]]
-/// >>> ss.NuSpline.shape_preserving(points, strategy="nussp").diagnostics
-/// Diagnostics(status='solved', iterations=4, solves=5, relaxations=0, nodes_changed=5)
+/// >>> ss.NuSpline.shape_preserving(points, "uniform").diagnostics
+/// Diagnostics(status='solved', iterations=..., solves=..., relaxations=..., nodes_changed=5)
 #[pyclass(module = "shapespline", frozen, get_all, eq, hash)]
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub(crate) struct Diagnostics {
@@ -107,8 +107,8 @@ impl Diagnostics {
 /// --------
 /// >>> import shapespline as ss
 /// >>> points = [[0, 0, 0], [4, 0, 0], [4.5, 0.5, 0], [4.5, 1, 0.5], [4.5, 1, 5]]
-/// >>> ss.NuSpline.shape_preserving(points, strategy="nussp").history[-1]
-/// SearchStep(phase='verify', violations=0, changed=0)
+/// >>> ss.NuSpline.shape_preserving(points, "uniform").history[0]
+/// SearchStep(phase='raise', violations=2, changed=5)
 #[pyclass(module = "shapespline", frozen, get_all, eq, hash)]
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub(crate) struct SearchStep {

@@ -1,5 +1,4 @@
-//! Numbers and arrays that come in. A `TypeError` raised here gets the argument's name from pyo3; a
-//! `ValueError` names it itself.
+//! Numbers and arrays that come in. Every error names the argument.
 
 use numpy::{
     PyArrayDescrMethods, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArray,
@@ -59,8 +58,8 @@ pub(crate) fn array<'py>(argument: &str, object: &Bound<'py, PyAny>) -> PyResult
     if !matches!(dtype.kind(), b'b' | b'i' | b'u' | b'f') {
         let given = if any.is(object) { "an array" } else { "a value" };
         return Err(PyTypeError::new_err(format!(
-            "must be real numbers, got {given} of type {} with dtype {}",
-            object.get_type().name()?,
+            "{argument} must hold real numbers, got {given} of type {} with dtype {}",
+            kind(object),
             dtype.str()?,
         )));
     }
@@ -148,31 +147,31 @@ impl<'py> FromPyObject<'_, 'py> for Query<'py> {
     }
 }
 
-/// An integer of any size; those beyond i64 become the nearest i64, which is out of every range.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Integer(pub(crate) i64);
-
-impl<'py> FromPyObject<'_, 'py> for Integer {
-    type Error = PyErr;
-
-    fn extract(object: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
-        match object.extract::<i64>() {
-            Ok(value) => Ok(Self(value)),
-            Err(error) if error.is_instance_of::<PyOverflowError>(object.py()) => {
-                Ok(Self(if object.lt(0)? { i64::MIN } else { i64::MAX }))
-            }
-            Err(error) => Err(error),
+/// A number.
+pub(crate) fn float(argument: &str, object: &Bound<'_, PyAny>) -> PyResult<f64> {
+    object.extract::<f64>().map_err(|error| {
+        if error.is_instance_of::<PyOverflowError>(object.py()) {
+            PyValueError::new_err(format!("{argument} is too large for a float"))
+        } else {
+            PyTypeError::new_err(format!("{argument} must be a number, got {}", kind(object)))
         }
-    }
+    })
 }
 
-impl Integer {
-    /// The number as a count of at least `least`.
-    pub(crate) fn at_least(self, argument: &str, least: usize) -> PyResult<usize> {
-        let Self(value) = self;
-        usize::try_from(value).ok().filter(|&count| count >= least).ok_or_else(|| {
+/// An integer of at least `least`.
+pub(crate) fn count(argument: &str, least: usize, object: &Bound<'_, PyAny>) -> PyResult<usize> {
+    match object.extract::<i64>() {
+        Ok(value) => usize::try_from(value).ok().filter(|&n| n >= least).ok_or_else(|| {
             PyValueError::new_err(format!("{argument} must be at least {least}, got {value}"))
-        })
+        }),
+        Err(error) if error.is_instance_of::<PyOverflowError>(object.py()) => {
+            let text = format!("{argument} must be an integer that 64 bits hold, got {object}");
+            Err(PyValueError::new_err(text))
+        }
+        Err(_) => {
+            let text = format!("{argument} must be an integer, got {}", kind(object));
+            Err(PyTypeError::new_err(text))
+        }
     }
 }
 

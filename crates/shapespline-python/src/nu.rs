@@ -6,15 +6,15 @@ use pyo3::{PyClassInitializer, prelude::*, types::PyType};
 use shapespline::{
     criteria::Criterion,
     geometry::DataPolygon,
-    nu::{self, Fit, FitError, SearchOptions, Status, Tension},
+    nu::{self, Fit, FitError, SearchOptions, Status, Strategy, Tension},
 };
 
 use crate::{
     curve::SpaceCurve,
     diagnostics::Search,
     error::{convergence_error, fit_error},
-    input::{Integer, Numbers, Points, numbers},
-    options::{CriteriaNames, Ends, Parameters, strategy, tolerances},
+    input::{Numbers, Points, numbers},
+    options::{self, CriteriaNames, Ends, Parameters, tolerances},
     report::ShapeReport,
     work::{detached, interruptible},
 };
@@ -82,7 +82,7 @@ impl NodalTension {
 /// >>> points = [[0, 0, 0], [4, 0, 0], [4.5, 0.5, 0], [4.5, 1, 0.5], [4.5, 1, 5]]
 /// >>> curve = ss.NuSpline(points, tension=[0, 3, 1, 3, 0])
 /// >>> curve
-/// <NuSpline: 5 points in space, tension up to 3 at 3 of them; u from 0 to 9.93934, boundary zero-curvature>
+/// <NuSpline: 5 points in space, tension up to 3 at 3 of them; ...>
 /// >>> curve(4.0)
 /// array([4., 0., 0.])
 #[pyclass(module = "shapespline", frozen, extends = SpaceCurve)]
@@ -171,11 +171,11 @@ impl NuSpline {
     /// --------
     /// >>> import shapespline as ss
     /// >>> points = [[0, 0, 0], [4, 0, 0], [4.5, 0.5, 0], [4.5, 1, 0.5], [4.5, 1, 5]]
-    /// >>> curve = ss.NuSpline.shape_preserving(points, strategy="nussp", step=0.5)
+    /// >>> curve = ss.NuSpline.shape_preserving(points, "uniform", strategy="nussp")
     /// >>> curve.check().ok
     /// True
     /// >>> curve.tension
-    /// array([1.5, 1.5, 1.5, 1.5, 1.5])
+    /// array([9.5, 9.5, 9.5, 9.5, 8. ])
     #[classmethod]
     #[pyo3(
         signature = (
@@ -184,7 +184,7 @@ impl NuSpline {
             *,
             boundary=Ends::ZERO_CURVATURE,
             criteria=CriteriaNames::ALL,
-            strategy="fairest",
+            strategy=Strategy::Fairest,
             step=0.5,
             coplanarity=0.2,
             collinearity=0.2,
@@ -203,29 +203,29 @@ impl NuSpline {
         parameters: Parameters,
         boundary: Ends,
         criteria: CriteriaNames,
-        strategy: &str,
-        step: f64,
-        coplanarity: f64,
-        collinearity: f64,
-        tolerance: f64,
-        max_iterations: Option<Integer>,
+        #[pyo3(from_py_with = options::strategy)] strategy: Strategy,
+        #[pyo3(from_py_with = options::step)] step: f64,
+        #[pyo3(from_py_with = options::coplanarity)] coplanarity: f64,
+        #[pyo3(from_py_with = options::collinearity)] collinearity: f64,
+        #[pyo3(from_py_with = options::tolerance)] tolerance: f64,
+        #[pyo3(from_py_with = options::max_iterations)] max_iterations: Option<usize>,
     ) -> PyResult<Py<PyAny>> {
         let py = class.py();
         let Points { points, dimension } = points;
         let boundary = boundary.of(dimension)?;
-        let options = SearchOptions {
+        let search = SearchOptions {
             criteria: criteria.0,
             tolerances: tolerances(coplanarity, collinearity, tolerance)?,
-            strategy: self::strategy(strategy)?,
+            strategy,
             step,
-            max_iterations: max_iterations.map(|n| n.at_least("max_iterations", 1)).transpose()?,
+            max_iterations,
         };
         let fit = interruptible(py, points.len(), |monitor| -> Result<_, FitError> {
             let polygon = DataPolygon::with_dimension(points, dimension, &parameters.0, boundary)?;
-            nu::NuSpline::shape_preserving_with(polygon, &options, &mut |_| monitor())
+            nu::NuSpline::shape_preserving_with(polygon, &search, &mut |_| monitor())
         })?
         .map_err(fit_error)?;
-        finish(py, fit, &options)
+        finish(py, fit, &search)
     }
 }
 

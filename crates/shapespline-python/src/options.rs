@@ -12,7 +12,7 @@ use shapespline::{
 
 use crate::{
     error::input_error,
-    input::{Numbers, kind, numbers, text},
+    input::{Numbers, count, float, kind, numbers, text},
     tangents::Tangents,
 };
 
@@ -28,16 +28,73 @@ fn unknown(argument: &str, name: &str, options: &str) -> PyErr {
     PyValueError::new_err(format!("{argument} must be one of {options}; got '{name}'"))
 }
 
-pub(crate) fn side(name: &str) -> PyResult<Side> {
-    match name {
-        "right" => Ok(Side::Right),
-        "left" => Ok(Side::Left),
-        _ => Err(unknown("side", name, "'left', 'right'")),
-    }
+/// The name in a string argument.
+fn name(argument: &str, object: &Bound<'_, PyAny>) -> PyResult<String> {
+    text(object).ok_or_else(|| {
+        PyTypeError::new_err(format!("{argument} must be a string, got {}", kind(object)))
+    })
 }
 
-pub(crate) fn strategy(name: &str) -> PyResult<Strategy> {
-    choose("strategy", name, &Strategy::NAMED)
+pub(crate) fn side(object: &Bound<'_, PyAny>) -> PyResult<Side> {
+    choose("side", &name("side", object)?, &[("left", Side::Left), ("right", Side::Right)])
+}
+
+pub(crate) fn strategy(object: &Bound<'_, PyAny>) -> PyResult<Strategy> {
+    choose("strategy", &name("strategy", object)?, &Strategy::NAMED)
+}
+
+/// What is even between samples.
+#[derive(Clone, Copy)]
+pub(crate) enum Spacing {
+    Parameter,
+    ArcLength,
+}
+
+pub(crate) fn by(object: &Bound<'_, PyAny>) -> PyResult<Spacing> {
+    let ways = [("parameter", Spacing::Parameter), ("arc-length", Spacing::ArcLength)];
+    choose("by", &name("by", object)?, &ways)
+}
+
+// Plain numbers: pyo3 tells a converter the value, not the argument it is for.
+
+pub(crate) fn nu(object: &Bound<'_, PyAny>) -> PyResult<usize> {
+    count("nu", 0, object)
+}
+pub(crate) fn n(object: &Bound<'_, PyAny>) -> PyResult<usize> {
+    count("n", 1, object)
+}
+pub(crate) fn max_iterations(object: &Bound<'_, PyAny>) -> PyResult<Option<usize>> {
+    if object.is_none() { Ok(None) } else { count("max_iterations", 1, object).map(Some) }
+}
+pub(crate) fn step(object: &Bound<'_, PyAny>) -> PyResult<f64> {
+    float("step", object)
+}
+pub(crate) fn coplanarity(object: &Bound<'_, PyAny>) -> PyResult<f64> {
+    float("coplanarity", object)
+}
+pub(crate) fn collinearity(object: &Bound<'_, PyAny>) -> PyResult<f64> {
+    float("collinearity", object)
+}
+pub(crate) fn tolerance(object: &Bound<'_, PyAny>) -> PyResult<f64> {
+    float("tolerance", object)
+}
+pub(crate) fn a(object: &Bound<'_, PyAny>) -> PyResult<Option<f64>> {
+    end("a", object)
+}
+pub(crate) fn b(object: &Bound<'_, PyAny>) -> PyResult<Option<f64>> {
+    end("b", object)
+}
+
+/// A finite end of an interval, or `None`.
+fn end(argument: &str, object: &Bound<'_, PyAny>) -> PyResult<Option<f64>> {
+    if object.is_none() {
+        return Ok(None);
+    }
+    let value = float(argument, object)?;
+    if value.is_finite() {
+        return Ok(Some(value));
+    }
+    Err(PyValueError::new_err(format!("{argument} must be finite, got {value}")))
 }
 
 /// `parameters`: a name, an exponent, or the parameters themselves.
@@ -117,7 +174,7 @@ impl<'py> FromPyObject<'_, 'py> for Ends {
         match object.cast::<Tangents>() {
             Ok(tangents) => Ok(Self::Tangents(*tangents.get())),
             Err(_) => Err(PyTypeError::new_err(format!(
-                "must be 'zero-curvature', 'natural', 'periodic', 'circular' or \
+                "boundary must be 'zero-curvature', 'natural', 'periodic', 'circular' or \
                  Tangents(start, end), got {}",
                 kind(&object)
             ))),
@@ -153,7 +210,7 @@ impl<'py> FromPyObject<'_, 'py> for CriteriaNames {
         }
         let wrong = |given: &Bound<'_, PyAny>| {
             PyTypeError::new_err(format!(
-                "must be None, a name or an iterable of names, got {}",
+                "criteria must be None, a name or an iterable of names, got {}",
                 kind(given)
             ))
         };

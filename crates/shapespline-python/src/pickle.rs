@@ -60,15 +60,17 @@ pub(crate) fn write_report(report: &ShapeReport) -> PyResult<Vec<u8>> {
     put(bytes, &(&report.report, report.criteria, report.tolerances))
 }
 
+/// The curve of a pickle.
 #[pyfunction]
-pub(crate) fn _curve_from_bytes(py: Python<'_>, mut bytes: &[u8]) -> PyResult<Py<PyAny>> {
-    let (curve, search) = read_curve(&mut bytes)?;
+pub(crate) fn _curve_from_bytes(py: Python<'_>, mut data: &[u8]) -> PyResult<Py<PyAny>> {
+    let (curve, search) = read_curve(&mut data)?;
     SpaceCurve::of(curve, search).into_python(py)
 }
 
+/// The report of a pickle.
 #[pyfunction]
-pub(crate) fn _report_from_bytes(mut bytes: &[u8]) -> PyResult<ShapeReport> {
-    let (curve, _) = read_curve(&mut bytes)?;
-    let (report, criteria, tolerances) = take(&mut bytes)?;
+pub(crate) fn _report_from_bytes(mut data: &[u8]) -> PyResult<ShapeReport> {
+    let (curve, _) = read_curve(&mut data)?;
+    let (report, criteria, tolerances) = take(&mut data)?;
     Ok(ShapeReport::of(report, curve, criteria, tolerances))
 }

@@ -41,10 +41,11 @@ const BLOCK: usize = 2048;
 /// Examples
 /// --------
 /// >>> import shapespline as ss
-/// >>> curve = ss.NuSpline([[0, 0], [4, 0], [4.5, 0.5], [4.5, 1], [4.5, 5]])
-/// >>> worst = min(curve.check().violations, key=lambda record: record.margin)
+/// >>> points = [[0, 0, 0], [4, 0, 0], [4.5, 0.5, 0], [4.5, 1, 0.5], [4.5, 1, 5]]
+/// >>> report = ss.NuSpline(points, "uniform").check()
+/// >>> worst = min(report.violations, key=lambda record: record.margin)
 /// >>> worst.criterion, worst.segment, worst.satisfied
-/// ('convexity', 1, False)
+/// ('convexity', 2, False)
 #[pyclass(module = "shapespline", frozen, get_all, eq, hash)]
 #[derive(Debug, Clone)]
 pub(crate) struct ShapeRecord {
@@ -138,13 +139,13 @@ impl ShapeRecord {
 /// Examples
 /// --------
 /// >>> import shapespline as ss
-/// >>> points = [[0, 0], [4, 0], [4.5, 0.5], [4.5, 1], [4.5, 5]]
-/// >>> report = ss.NuSpline(points).check()
+/// >>> points = [[0, 0, 0], [4, 0, 0], [4.5, 0.5, 0], [4.5, 1, 0.5], [4.5, 1, 5]]
+/// >>> report = ss.NuSpline(points, "uniform").check()
 /// >>> report.ok, report.counts()["convexity"]
 /// (False, (2, 2))
 /// >>> [(v.criterion, v.segment) for v in report.violations]
-/// [('convexity', 1), ('convexity', 2)]
-/// >>> ss.NuSpline.shape_preserving(points).check().ok
+/// [('convexity', 1), ('torsion', 1), ('convexity', 2), ('torsion', 2)]
+/// >>> ss.NuSpline.shape_preserving(points, "uniform").check().ok
 /// True
 #[pyclass(module = "shapespline", frozen)]
 pub(crate) struct ShapeReport {

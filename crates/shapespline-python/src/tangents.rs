@@ -71,14 +71,7 @@ impl Tangents {
 
 /// A tangent: its vector and the number of its components.
 fn tangent(argument: &str, object: &Bound<'_, PyAny>) -> PyResult<(DVec3, Dimension)> {
-    let named = |error: PyErr| {
-        if error.is_instance_of::<pyo3::exceptions::PyTypeError>(object.py()) {
-            let text = format!("{argument} {}", error.value(object.py()));
-            return pyo3::exceptions::PyTypeError::new_err(text);
-        }
-        error
-    };
-    let (vector, dimension) = match numbers(argument, object).map_err(named)? {
+    let (vector, dimension) = match numbers(argument, object)? {
         Numbers::Many(v) if v.len() == 3 => (DVec3::from_slice(&v), Dimension::Three),
         Numbers::Many(v) if v.len() == 2 => (DVec3::new(v[0], v[1], 0.0), Dimension::Two),
         Numbers::Many(v) => {

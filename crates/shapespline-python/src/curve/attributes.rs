@@ -8,7 +8,7 @@ use super::SpaceCurve;
 use crate::{
     diagnostics::{Diagnostics, SearchStep},
     error::input_error,
-    options::{CriteriaNames, tolerances},
+    options::{self, CriteriaNames, tolerances},
     output::{FloatArray, vectors},
     report::ShapeReport,
     tangents::Tangents,
@@ -118,8 +118,8 @@ impl SpaceCurve {
     /// Examples
     /// --------
     /// >>> import shapespline as ss
-    /// >>> points = [[0, 0], [4, 0], [4.5, 0.5], [4.5, 1], [4.5, 5]]
-    /// >>> steps = ss.NuSpline.shape_preserving(points).history
+    /// >>> points = [[0, 0, 0], [4, 0, 0], [4.5, 0.5, 0], [4.5, 1, 0.5], [4.5, 1, 5]]
+    /// >>> steps = ss.NuSpline.shape_preserving(points, "uniform").history
     /// >>> steps[0].violations, steps[-1].violations
     /// (2, 0)
     #[getter]
@@ -161,9 +161,9 @@ impl SpaceCurve {
     /// --------
     /// >>> import shapespline as ss
     /// >>> points = [[0, 0, 0], [4, 0, 0], [4.5, 0.5, 0], [4.5, 1, 0.5], [4.5, 1, 5]]
-    /// >>> ss.NuSpline(points).check().counts()["convexity"]
+    /// >>> ss.NuSpline(points, "uniform").check().counts()["convexity"]
     /// (2, 2)
-    /// >>> ss.NuSpline.shape_preserving(points).check().ok
+    /// >>> ss.NuSpline.shape_preserving(points, "uniform").check().ok
     /// True
     #[pyo3(
         signature = (criteria=CriteriaNames::ALL, *, coplanarity=0.2, collinearity=0.2, tolerance=1e-9),
@@ -173,9 +173,9 @@ impl SpaceCurve {
         &self,
         py: Python<'_>,
         criteria: CriteriaNames,
-        coplanarity: f64,
-        collinearity: f64,
-        tolerance: f64,
+        #[pyo3(from_py_with = options::coplanarity)] coplanarity: f64,
+        #[pyo3(from_py_with = options::collinearity)] collinearity: f64,
+        #[pyo3(from_py_with = options::tolerance)] tolerance: f64,
     ) -> PyResult<ShapeReport> {
         let criteria = criteria.0;
         let tolerances = tolerances(coplanarity, collinearity, tolerance)?;

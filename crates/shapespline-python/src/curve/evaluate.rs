@@ -2,12 +2,12 @@
 
 use pyo3::{IntoPyObjectExt, prelude::*};
 use rayon::prelude::*;
-use shapespline::geometry::{self, DVec3};
+use shapespline::geometry::{self, DVec3, Side};
 
 use super::{Curve, SpaceCurve};
 use crate::{
     error::input_error,
-    input::{Integer, Query},
+    input::Query,
     options,
     output::{FloatArray, shaped, vector, zeros},
     work::detached,
@@ -126,19 +126,18 @@ impl SpaceCurve {
     /// >>> curve([[0, 5], [10, 15]], 1).shape
     /// (2, 2, 2)
     #[pyo3(
-        signature = (u, nu=Integer(0), *, side="right"),
+        signature = (u, nu=0, *, side=Side::Right),
         text_signature = "($self, u, nu=0, *, side='right')"
     )]
     fn _call<'py>(
         &self,
         py: Python<'py>,
         u: Query<'py>,
-        nu: Integer,
-        side: &str,
+        #[pyo3(from_py_with = options::nu)] nu: usize,
+        #[pyo3(from_py_with = options::side)] side: Side,
     ) -> PyResult<FloatArray<'py>> {
-        let side = options::side(side)?;
         // From the fourth derivative on all are zero.
-        let order = nu.at_least("nu", 0)?.min(4);
+        let order = nu.min(4);
         let columns = self.columns();
         match u {
             Query::One(u) => Ok(vector(py, self.curve.evaluate(u, order, side), columns)),
@@ -175,16 +174,15 @@ impl SpaceCurve {
     /// >>> angle = np.linspace(0, 2 * np.pi, 101)
     /// >>> circle = 2 * np.column_stack([np.cos(angle), np.sin(angle)])
     /// >>> circle[-1] = circle[0]
-    /// >>> round(ss.NuSpline(circle, boundary="periodic").curvature(1.0), 4)
+    /// >>> round(ss.NuSpline(circle, boundary="periodic").curvature(1.0), 3)
     /// 0.5
-    #[pyo3(signature = (u, *, side="right"))]
+    #[pyo3(signature = (u, *, side=Side::Right), text_signature = "($self, u, *, side='right')")]
     fn curvature<'py>(
         &self,
         py: Python<'py>,
         u: Query<'py>,
-        side: &str,
+        #[pyo3(from_py_with = options::side)] side: Side,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let side = options::side(side)?;
         self.scalar(py, &u, move |curve, u| {
             let [first, second, _] = curve.derivatives(u, side);
             geometry::curvature(first, second)
@@ -210,14 +208,13 @@ impl SpaceCurve {
     /// >>> import shapespline as ss
     /// >>> ss.NuSpline([[0, 0], [3, 4], [6, 8]]).curvature_vector(1.0).shape
     /// (2,)
-    #[pyo3(signature = (u, *, side="right"))]
+    #[pyo3(signature = (u, *, side=Side::Right), text_signature = "($self, u, *, side='right')")]
     fn curvature_vector<'py>(
         &self,
         py: Python<'py>,
         u: Query<'py>,
-        side: &str,
+        #[pyo3(from_py_with = options::side)] side: Side,
     ) -> PyResult<FloatArray<'py>> {
-        let side = options::side(side)?;
         self.vectors(py, &u, self.columns(), move |curve, u| {
             let [first, second, _] = curve.derivatives(u, side);
             geometry::curvature_vector(first, second)
@@ -247,14 +244,13 @@ impl SpaceCurve {
     /// >>> helix = np.column_stack([np.cos(t), np.sin(t), t])
     /// >>> round(ss.NuSpline(helix, boundary="circular").torsion(4.001), 2)
     /// 0.5
-    #[pyo3(signature = (u, *, side="right"))]
+    #[pyo3(signature = (u, *, side=Side::Right), text_signature = "($self, u, *, side='right')")]
     fn torsion<'py>(
         &self,
         py: Python<'py>,
         u: Query<'py>,
-        side: &str,
+        #[pyo3(from_py_with = options::side)] side: Side,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let side = options::side(side)?;
         self.scalar(py, &u, move |curve, u| {
             let [first, second, third] = curve.derivatives(u, side);
             geometry::torsion(first, second, third)
@@ -282,15 +278,14 @@ impl SpaceCurve {
     /// >>> T, N, B = ss.NuSpline([[0, 0], [1, 1], [2, 0]]).frame(0.5)
     /// >>> B
     /// array([ 0.,  0., -1.])
-    #[pyo3(signature = (u, side="right"))]
+    #[pyo3(signature = (u, side=Side::Right), text_signature = "($self, u, side='right')")]
     #[allow(clippy::type_complexity)]
     fn frame<'py>(
         &self,
         py: Python<'py>,
         u: Query<'py>,
-        side: &str,
+        #[pyo3(from_py_with = options::side)] side: Side,
     ) -> PyResult<(FloatArray<'py>, FloatArray<'py>, FloatArray<'py>)> {
-        let side = options::side(side)?;
         let frame = move |curve: &dyn Curve, u: f64| {
             let [first, second, _] = curve.derivatives(u, side);
             geometry::frame(first, second)

@@ -1,24 +1,16 @@
 //! Arc length and samples.
 
-use pyo3::{exceptions::PyValueError, prelude::*};
+use pyo3::prelude::*;
 use rayon::prelude::*;
 use shapespline::geometry::{ArcLength, Side};
 
 use super::SpaceCurve;
 use crate::{
     error::input_error,
-    input::Integer,
-    options::choose,
+    options::{self, Spacing},
     output::{FloatArray, shaped, zeros},
     work::detached,
 };
-
-/// What is even between samples.
-#[derive(Clone, Copy)]
-enum Spacing {
-    Parameter,
-    ArcLength,
-}
 
 #[pymethods]
 impl SpaceCurve {
@@ -51,16 +43,16 @@ impl SpaceCurve {
     /// >>> round(curve.arc_length(), 12), round(curve.arc_length(5, 0), 12)
     /// (10.0, -5.0)
     #[pyo3(signature = (a=None, b=None))]
-    fn arc_length(&self, py: Python<'_>, a: Option<f64>, b: Option<f64>) -> PyResult<f64> {
-        for (name, value) in [("a", a), ("b", b)] {
-            if let Some(value) = value.filter(|v| !v.is_finite()) {
-                return Err(PyValueError::new_err(format!("{name} must be finite, got {value}")));
-            }
-        }
+    fn arc_length(
+        &self,
+        py: Python<'_>,
+        #[pyo3(from_py_with = options::a)] a: Option<f64>,
+        #[pyo3(from_py_with = options::b)] b: Option<f64>,
+    ) -> f64 {
         let cubic = self.curve.cubic();
         let knots = cubic.knots();
         let (a, b) = (a.unwrap_or(knots[0]), b.unwrap_or(knots[knots.len() - 1]));
-        Ok(detached(py, cubic.segments(), || ArcLength::new(cubic).between(a, b)))
+        detached(py, cubic.segments(), || ArcLength::new(cubic).between(a, b))
     }
 
     /// Points on the curve from its first to its last point, evenly spaced.
@@ -93,13 +85,15 @@ impl SpaceCurve {
     ///        [3., 4.],
     ///        [6., 8.]])
     #[pyo3(
-        signature = (n, by="parameter"),
+        signature = (n, by=Spacing::Parameter),
         text_signature = "($self, n, by='parameter')"
     )]
-    fn sample<'py>(&self, py: Python<'py>, n: Integer, by: &str) -> PyResult<FloatArray<'py>> {
-        let n = n.at_least("n", 1)?;
-        let ways = [("parameter", Spacing::Parameter), ("arc-length", Spacing::ArcLength)];
-        let spacing = choose("by", by, &ways)?;
+    fn sample<'py>(
+        &self,
+        py: Python<'py>,
+        #[pyo3(from_py_with = options::n)] n: usize,
+        #[pyo3(from_py_with = options::by)] by: Spacing,
+    ) -> PyResult<FloatArray<'py>> {
         let (cubic, columns) = (self.curve.cubic(), self.columns());
         let (mut u, mut values) = (zeros(n, 1)?, zeros(n, columns)?);
         detached(py, n.max(cubic.segments()), || {
@@ -107,7 +101,7 @@ impl SpaceCurve {
             let (first, last) = (knots[0], knots[knots.len() - 1]);
             let part = |i: usize| i as f64 / (n - 1).max(1) as f64;
             let end = n - 1;
-            match spacing {
+            match by {
                 Spacing::Parameter => u.iter_mut().enumerate().for_each(|(i, u)| {
                     *u = if i == end && i > 0 { last } else { first + part(i) * (last - first) };
                 }),
