@@ -20,6 +20,7 @@
 
 mod calls;
 mod checker;
+mod cone;
 mod criterion;
 mod faults;
 mod margin;

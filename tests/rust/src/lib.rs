@@ -1,6 +1,8 @@
 //! Data for the tests that need more than one crate.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "test code")]
 
+pub mod generate;
+
 use std::path::Path;
 
 use shapespline::prelude::*;
