@@ -166,7 +166,7 @@ impl Resolvable {
                 while pending.next_if(|&next| next <= at).is_some() {}
                 let now = eliminate(i, rows.row(i), before)?;
                 // A changed row can leave the elimination as it was; the first one always counts.
-                if at > first && self.holds(i, now) && !changed.binary_search(&i).is_ok() {
+                if at > first && self.holds(i, now) && changed.binary_search(&i).is_err() {
                     break;
                 }
                 (self.ratio[i], self.reduced[i]) = now;

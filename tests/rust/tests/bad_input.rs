@@ -1,4 +1,5 @@
 //! Unusable input is refused with the argument, the place and the value.
+#![allow(clippy::unwrap_used, reason = "test code")]
 
 use shapespline::prelude::*;
 

@@ -1,4 +1,5 @@
 //! Moving the data moves the curve, and nothing else.
+#![allow(clippy::unwrap_used, reason = "test code")]
 
 use shapespline::prelude::*;
 use shapespline_tests::{

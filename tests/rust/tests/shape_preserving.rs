@@ -2,6 +2,7 @@
 //!
 //! The verdicts here are the library's own; `tests/test_shape_preserving.py` checks the same kinds of
 //! data by dense sampling.
+#![allow(clippy::unwrap_used, reason = "test code")]
 
 use shapespline::prelude::*;
 use shapespline_tests::{
