@@ -102,7 +102,7 @@ def building(sizes: list[int]) -> Iterator[Line]:
             lambda p=points, t=tension: ss.NuSpline(p, tension=t),
             lambda p=points, u=u: make_interp_spline(u, p, k=3),
         )
-        yield faster(f"build, N = {count:.0e}", ours, theirs, 4.0)
+        yield faster(f"build, N = {count:g}", ours, theirs, 4.0)
 
 
 def preserving(count: int) -> Iterator[Line]:
@@ -117,7 +117,7 @@ def preserving(count: int) -> Iterator[Line]:
         lambda: ss.NuSpline.shape_preserving(points),
         lambda: make_interp_spline(u, points, k=3),
     )
-    what = f"shape_preserving, N = {count:.0e}, {100 * share:.2f} % of nodes violating"
+    what = f"shape_preserving, N = {count:g}, {100 * share:.2f} % of nodes violating"
     line = faster(what, ours, theirs, 1.0)
     yield line if 0 < share < 0.01 else Line(what, "", "", None, "0 … 1 %", False)
 
@@ -135,7 +135,7 @@ def evaluating(sizes: list[int], queries: int) -> Iterator[Line]:
                     spline(query, nu)
 
             times = best(lambda c=curve: three(c), lambda c=theirs: three(c))
-            what = f"evaluate f, f', f'' at {queries:.0e} {order}, N = {count:.0e}"
+            what = f"evaluate f, f', f'' at {queries:g} {order}, N = {count:g}"
             yield faster(what, *times, 3.0)
 
 
@@ -179,7 +179,7 @@ def memory(count: int) -> Iterator[Line]:
             check=False,
             cwd=Path(__file__).parent.parent,
         )
-        what = f"peak memory of a fit ({kind}), N = {count:.0e}, × input"
+        what = f"peak memory of a fit ({kind}), N = {count:g}, × input"
         if done.returncode:
             reason = done.stderr.strip().splitlines()[-1][:40]
             yield Line(f"{what}: {reason}", "", "", None, "≤ 10×", False)
