@@ -37,7 +37,7 @@ pub fn solve_cyclic<T: RightHandSide>(
     let m = n - 1;
     let mut column = vec![0.0; m];
     column[0] = lower[0];
-    column[m - 1] = column[m - 1] + upper[m - 1];
+    column[m - 1] += upper[m - 1];
     let mut copy = diagonal[..m].to_vec();
     solve_tridiagonal(&lower[..m], &mut copy, &upper[..m], &mut column)?;
     solve_tridiagonal(&lower[..m], &mut diagonal[..m], &upper[..m], &mut right[..m])?;

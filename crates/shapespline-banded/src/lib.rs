@@ -14,3 +14,8 @@ pub use cyclic::solve_cyclic;
 pub use error::SolveError;
 pub use resolvable::{Resolvable, Row, Rows};
 pub use tridiagonal::{RightHandSide, solve_tridiagonal};
+
+/// The examples of the README are run as tests.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

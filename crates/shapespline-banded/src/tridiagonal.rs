@@ -37,7 +37,7 @@ pub fn solve_tridiagonal<T: RightHandSide>(
     for i in 0..n {
         let mut pivot = diagonal[i];
         if i > 0 {
-            pivot = pivot - lower[i] * diagonal[i - 1];
+            pivot -= lower[i] * diagonal[i - 1];
             right[i] = right[i] - right[i - 1] * lower[i];
         }
         let pivot = usable(i, pivot)?;

@@ -1,11 +1,12 @@
 //! The verdict on one segment: which of the exact conditions fail.
 
 use glam::DVec3;
-use shapespline_geometry::bernstein::{
-    multiply_quadratics, positivity, quadratic_is_positive, restrict,
-};
+use shapespline_geometry::bernstein::quadratic_is_positive;
 
-use crate::Calls;
+use crate::{
+    Calls,
+    cone::{Quadratic, end_is_inside, inside, part},
+};
 
 /// The conditions that fail on a segment `m`, as the failure sets (5.40)–(5.57) of paper 001
 /// (corrected by E3) and Theorems 13.6–13.11 of paper 002 distinguish them: the place of a failure
@@ -117,34 +118,16 @@ impl Situation {
         self.a.cross(self.chord).dot(self.c)
     }
 
-    /// Bernstein coefficients of `ψ` for the sine `ε` and the unit normal `n`:
-    /// `ε²‖ω‖² − ‖ω × n‖²` (paper 001, (5.10)), a quartic.
-    pub(crate) fn psi(&self, epsilon: f64, n: DVec3) -> [f64; 5] {
+    /// `ω` in Bernstein form.
+    pub(crate) fn omega_quadratic(&self) -> Quadratic {
         let [first, middle, last] = self.omega;
-        cone([first, middle * 0.5, last], epsilon, n)
+        [first, middle * 0.5, last]
     }
 
-    /// Bernstein coefficients of `φ` for the sine `ε` and the unit direction `l`:
-    /// `ε²‖γ'‖² − ‖γ' × l‖²` (paper 001, (5.22)), a quartic.
-    pub(crate) fn phi(&self, epsilon: f64, l: DVec3) -> [f64; 5] {
-        cone([self.a, self.chord - self.a - self.c, self.c], epsilon, l)
+    /// `γ'` in Bernstein form, less a factor 3.
+    pub(crate) fn tangent_quadratic(&self) -> Quadratic {
+        [self.a, self.chord - self.a - self.c, self.c]
     }
-}
-
-/// `ε²‖v‖² − ‖v × n‖²` for a vector quadratic `v` in Bernstein form: positive where `v` lies inside
-/// the double cone around `n` whose half angle has the sine `ε`.
-fn cone(v: [DVec3; 3], epsilon: f64, n: DVec3) -> [f64; 5] {
-    let across = v.map(|x| x.cross(n));
-    let along = v.map(|x| x.dot(n));
-    // ε²‖v‖² = ε²(‖v×n‖² + (v·n)²): no difference of nearly equal squares.
-    let square = |f: fn(DVec3) -> f64, v: [DVec3; 3]| {
-        let v = v.map(f);
-        multiply_quadratics(v, v)
-    };
-    let (x, y, z) = (square(|v| v.x, across), square(|v| v.y, across), square(|v| v.z, across));
-    let along = multiply_quadratics(along, along);
-    let (inside, outside) = (epsilon * epsilon, (1.0 - epsilon) * (1.0 + epsilon));
-    std::array::from_fn(|i| inside * along[i] - outside * (x[i] + y[i] + z[i]))
 }
 
 /// What the coplanarity and collinearity conditions need beyond the legs.
@@ -191,38 +174,49 @@ pub(crate) fn sign_faults(s: &Situation, calls: Calls) -> Faults {
 pub(crate) fn cone_faults(s: &Situation, calls: Calls, cones: &Cones) -> Faults {
     let mut faults = Faults::default();
     if calls.any(Calls::COPLANARITY.and(Calls::SPLIT_COPLANARITY)) {
-        let psi = s.psi(cones.plane.0, cones.plane.1);
-        let (start, end) = (psi[0] > 0.0, psi[4] > 0.0);
+        let (epsilon, normal) = cones.plane;
+        let omega = s.omega_quadratic();
+        let start = end_is_inside(omega[0], normal, epsilon);
+        let end = end_is_inside(omega[2], normal, epsilon);
         faults.add(Faults::COPLANARITY_AT_START, !start);
         faults.add(Faults::COPLANARITY_AT_END, !end);
         if calls.any(Calls::COPLANARITY) {
-            let between = start && end && !positivity(psi).holds();
+            let between = start && end && !inside(omega, normal, epsilon).holds();
             faults.add(Faults::COPLANARITY_BETWEEN, between);
         } else {
             // A failure at the node itself is the fault above; here it is the rest of each part.
             let [left, right] = cones.parts;
-            let (first, last) = (restrict(psi, 0.0, left), restrict(psi, right, 1.0));
-            let inner = |part: [f64; 5], node: f64, far: f64| {
-                !(far > 0.0) || (node > 0.0 && !positivity(part).holds())
+            let inner = |v: Quadratic, node: bool, far: DVec3| {
+                let holds = || inside(v, normal, epsilon).holds();
+                !end_is_inside(far, normal, epsilon) || (node && !holds())
             };
-            let split = inner(first, first[0], first[4]) || inner(last, last[4], last[0]);
+            let (first, last) = (part(omega, 0.0, left), part(omega, right, 1.0));
+            let split = inner(first, start, first[2]) || inner(last, end, last[0]);
             faults.add(Faults::COPLANARITY_SPLIT, split);
         }
     }
     let (epsilon, lines) = cones.line;
     if calls.any(Calls::LINE_AT_START) {
-        let phi = restrict(s.phi(epsilon, lines[0]), 0.0, LINE_PART);
-        let (node, far) = (phi[0] > 0.0, phi[4] > 0.0);
+        let tangent = part(s.tangent_quadratic(), 0.0, LINE_PART);
+        let (node, far) = (
+            end_is_inside(tangent[0], lines[0], epsilon),
+            end_is_inside(tangent[2], lines[0], epsilon),
+        );
         faults.add(Faults::LINE_AT_START, !node);
         faults.add(Faults::LINE_AFTER_START, !far);
-        faults.add(Faults::LINE_INSIDE_START, node && far && !positivity(phi).holds());
+        let within = node && far && !inside(tangent, lines[0], epsilon).holds();
+        faults.add(Faults::LINE_INSIDE_START, within);
     }
     if calls.any(Calls::LINE_AT_END) {
-        let phi = restrict(s.phi(epsilon, lines[1]), 1.0 - LINE_PART, 1.0);
-        let (far, node) = (phi[0] > 0.0, phi[4] > 0.0);
+        let tangent = part(s.tangent_quadratic(), 1.0 - LINE_PART, 1.0);
+        let (far, node) = (
+            end_is_inside(tangent[0], lines[1], epsilon),
+            end_is_inside(tangent[2], lines[1], epsilon),
+        );
         faults.add(Faults::LINE_AT_END, !node);
         faults.add(Faults::LINE_BEFORE_END, !far);
-        faults.add(Faults::LINE_INSIDE_END, node && far && !positivity(phi).holds());
+        let within = node && far && !inside(tangent, lines[1], epsilon).holds();
+        faults.add(Faults::LINE_INSIDE_END, within);
     }
     faults
 }

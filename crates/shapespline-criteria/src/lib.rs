@@ -20,6 +20,7 @@
 
 mod calls;
 mod checker;
+mod cone;
 mod criterion;
 mod faults;
 mod margin;
@@ -30,3 +31,8 @@ pub use checker::{Checker, check};
 pub use criterion::{Criteria, Criterion, Tolerances};
 pub use faults::Faults;
 pub use report::{Count, Record, ShapeReport};
+
+/// The examples of the README are run as tests.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -11,10 +11,11 @@
 //! data wherever the vectors in them do not vanish.
 
 use glam::DVec3;
-use shapespline_geometry::bernstein::{Positivity, positivity, quadratic_minimum, restrict};
+use shapespline_geometry::bernstein::{Positivity, quadratic_minimum};
 
 use crate::{
     Calls,
+    cone::{Quadratic, inside, part},
     faults::{Cones, LINE_PART, Situation},
 };
 
@@ -69,20 +70,24 @@ pub(crate) fn torsion(s: &Situation, calls: Calls) -> Margin {
 
 pub(crate) fn coplanarity(s: &Situation, calls: Calls, cones: &Cones) -> Margin {
     let (epsilon, normal) = cones.plane;
-    let psi = |epsilon: f64| s.psi(epsilon, normal);
+    let over = |from: f64, to: f64| {
+        cone_margin(epsilon, normal, (from, to), part(s.omega_quadratic(), from, to))
+    };
     if calls.any(Calls::COPLANARITY) {
-        cone_margin(epsilon, (0.0, 1.0), psi)
+        over(0.0, 1.0)
     } else {
         let [left, right] = cones.parts;
-        cone_margin(epsilon, (0.0, left), psi).least(cone_margin(epsilon, (right, 1.0), psi))
+        over(0.0, left).least(over(right, 1.0))
     }
 }
 
 pub(crate) fn collinearity(s: &Situation, calls: Calls, cones: &Cones) -> Margin {
     let (epsilon, lines) = cones.line;
-    let at = |line: DVec3, part: (f64, f64)| cone_margin(epsilon, part, |e| s.phi(e, line));
-    let start = calls.any(Calls::LINE_AT_START).then(|| at(lines[0], (0.0, LINE_PART)));
-    let end = calls.any(Calls::LINE_AT_END).then(|| at(lines[1], (1.0 - LINE_PART, 1.0)));
+    let over = |line: DVec3, from: f64, to: f64| {
+        cone_margin(epsilon, line, (from, to), part(s.tangent_quadratic(), from, to))
+    };
+    let start = calls.any(Calls::LINE_AT_START).then(|| over(lines[0], 0.0, LINE_PART));
+    let end = calls.any(Calls::LINE_AT_END).then(|| over(lines[1], 1.0 - LINE_PART, 1.0));
     [start, end]
         .into_iter()
         .flatten()
@@ -92,8 +97,8 @@ pub(crate) fn collinearity(s: &Situation, calls: Calls, cones: &Cones) -> Margin
 
 /// `ε` less the sine of the half angle of the narrowest cone that holds the vector on a part of the
 /// segment. The verdict at `ε` comes first, and decides the sign; bisection then finds the sine.
-fn cone_margin(epsilon: f64, (from, to): (f64, f64), quartic: impl Fn(f64) -> [f64; 5]) -> Margin {
-    let verdict = |sine: f64| positivity(restrict(quartic(sine), from, to));
+fn cone_margin(epsilon: f64, axis: DVec3, (from, to): (f64, f64), v: Quadratic) -> Margin {
+    let verdict = |sine: f64| inside(v, axis, sine);
     let holds = verdict(epsilon).holds();
     let (mut inside, mut outside) = if holds { (0.0, epsilon) } else { (epsilon, 1.0) };
     let mut at = from;

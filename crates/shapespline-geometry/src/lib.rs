@@ -36,3 +36,8 @@ pub use piecewise::{Domain, PiecewiseCubic};
 pub use polygon::{DataPolygon, Dimension};
 pub use segment::CubicSegment;
 pub use vector::{length, normalize};
+
+/// The examples of the README are run as tests.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

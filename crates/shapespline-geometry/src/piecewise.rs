@@ -62,6 +62,9 @@ impl PartialEq for PiecewiseCubic {
 /// Queries are evaluated in blocks of this many, each block on one thread.
 const BLOCK: usize = 16_384;
 
+/// Queries whose segments are found before any of them is evaluated.
+const STRIDE: usize = 64;
+
 impl PiecewiseCubic {
     /// Curve from knots, points and the end legs of each segment.
     ///
@@ -225,25 +228,40 @@ impl PiecewiseCubic {
         // A table costs about as much to make as it saves on one query a segment.
         let table = if u.len() >= self.segments().max(64) { self.table() } else { None };
         let block = |u: &[f64], out: &mut [f64]| {
-            let mut hint = 0;
-            for (&u, row) in u.iter().zip(out.chunks_exact_mut(COLUMNS)) {
-                let (i, t) = if side == Side::Right {
-                    let u = self.wrap(u);
-                    hint = self.near(hint, u, table);
-                    (hint, self.local(hint, u))
-                } else {
-                    self.locate(u, side)
-                };
-                let value = self.derivative::<ORDER>(i, t).to_array();
-                row.copy_from_slice(&value[..COLUMNS]);
+            let ascending = u.is_sorted();
+            let (mut segments, mut hint) = ([0; STRIDE], 0);
+            for (u, out) in u.chunks(STRIDE).zip(out.chunks_mut(STRIDE * COLUMNS)) {
+                // First all segments, then all values: what the loops load from memory depends on
+                // no branch of the iteration before, so that cache misses overlap.
+                for (&u, segment) in u.iter().zip(&mut segments) {
+                    *segment = match table {
+                        Some(table) if !ascending => table.segment(&self.knots, self.wrap(u)),
+                        _ => self.near(hint, self.wrap(u)),
+                    };
+                    hint = *segment;
+                }
+                for ((&u, &i), row) in u.iter().zip(&segments).zip(out.chunks_exact_mut(COLUMNS)) {
+                    let value = self.derivative::<ORDER>(i, self.local(i, self.wrap(u)));
+                    row.copy_from_slice(&value.to_array()[..COLUMNS]);
+                }
             }
         };
+        let left = |u: &[f64], out: &mut [f64]| {
+            for (&u, row) in u.iter().zip(out.chunks_exact_mut(COLUMNS)) {
+                let (i, t) = self.locate(u, Side::Left);
+                row.copy_from_slice(&self.derivative::<ORDER>(i, t).to_array()[..COLUMNS]);
+            }
+        };
+        let one = |u: &[f64], out: &mut [f64]| match side {
+            Side::Right => block(u, out),
+            Side::Left => left(u, out),
+        };
         if u.len() <= 2 * BLOCK {
-            block(u, out);
+            one(u, out);
         } else {
             u.par_chunks(BLOCK)
                 .zip(out.par_chunks_mut(BLOCK * COLUMNS))
-                .for_each(|(u, out)| block(u, out));
+                .for_each(|(u, out)| one(u, out));
         }
     }
 
@@ -251,22 +269,18 @@ impl PiecewiseCubic {
         self.locator.get_or_init(|| Locator::new(&self.knots)).as_ref()
     }
 
-    /// Segment of `u`: the one before, or the next (sorted queries), else by table or search.
+    /// Segment of `u`: the one before, or the next, as sorted queries have it, else by search.
     #[inline]
-    fn near(&self, hint: usize, u: f64, table: Option<&Locator>) -> usize {
-        let last = self.segments() - 1;
+    fn near(&self, hint: usize, u: f64) -> usize {
         if self.knots[hint] <= u {
             if u < self.knots[hint + 1] {
                 return hint;
             }
-            if hint < last && u < self.knots[hint + 2] {
+            if hint + 1 < self.segments() && u < self.knots[hint + 2] {
                 return hint + 1;
             }
         }
-        match table {
-            Some(table) => table.segment(&self.knots, u),
-            None => search(&self.knots, u, Side::Right),
-        }
+        search(&self.knots, u, Side::Right)
     }
 
     #[inline]

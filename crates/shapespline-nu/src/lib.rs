@@ -21,10 +21,11 @@
 //!
 //! let points = vec![
 //!     DVec3::new(0.0, 0.0, 0.0),
-//!     DVec3::new(4.0, 0.0, 0.0),
-//!     DVec3::new(4.5, 0.5, 0.0),
-//!     DVec3::new(4.5, 1.0, 0.5),
-//!     DVec3::new(4.5, 1.0, 5.0),
+//!     DVec3::new(2.0, 0.0, 0.1),
+//!     DVec3::new(4.0, 0.1, 0.1),
+//!     DVec3::new(4.5, 0.4, 0.2),
+//!     DVec3::new(4.6, 3.0, 0.2),
+//!     DVec3::new(4.6, 6.0, 0.3),
 //! ];
 //! let polygon = DataPolygon::new(points, &Parametrization::Chordal, Boundary::ZeroCurvature)?;
 //! let fit = NuSpline::shape_preserving(polygon, &SearchOptions::default())?;
@@ -41,3 +42,8 @@ mod system;
 pub use error::FitError;
 pub use shapespline_search::{Fit, SearchOptions, Status, Strategy};
 pub use spline::{NuSpline, Tension};
+
+/// The examples of the README are run as tests.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -19,8 +19,9 @@ const REACH: usize = 64;
 /// No run can be lowered by more than this part of it when relaxation ends.
 const RESOLUTION: f64 = 0.01;
 
-/// Sweeps over all runs; two or three suffice, for each begins with the runs the last one freed.
-const SWEEPS: usize = 32;
+/// Limit of sweeps over the runs that can still be lowered. Two or three are usual; two runs that free
+/// each other bit by bit have taken 32.
+const SWEEPS: usize = 256;
 
 /// Lowers the tension of a curve without faults as far as that leaves it without faults.
 pub(crate) fn relax<F: TensionFamily>(state: &mut State<'_, '_, F>) -> Result<(), F::Error> {
@@ -128,7 +129,7 @@ struct Bisection {
 
 impl Bisection {
     fn done(&self) -> bool {
-        self.keeps == 0.0 || self.keeps - self.breaks <= 0.5 * RESOLUTION * self.keeps
+        self.keeps == 0.0 || self.keeps - self.breaks <= RESOLUTION * self.keeps
     }
 }
 

@@ -2,12 +2,16 @@
 
 use std::ops::{ControlFlow, Range};
 
+use rayon::prelude::*;
 use shapespline_criteria::{Checker, Faults};
 
 use crate::{
     Diagnostics, Outcome, Pattern, Phase, SearchOptions, Status, Step, Strategy, TensionFamily,
     relax::relax,
 };
+
+/// Touched neighbourhoods from which on they are checked on all threads.
+const MANY: usize = 256;
 
 /// Searches for tensions under which a family's curve keeps the shape of its data.
 ///
@@ -24,14 +28,11 @@ pub fn search<F: TensionFamily>(
 ) -> Result<Outcome, F::Error> {
     let mut state = State::new(family, checker, monitor);
     let mut status = state.raise(options)?;
-    if status == Status::Solved && options.strategy == Strategy::Fairest && !state.untouched() {
-        relax(&mut state)?;
+    if status == Status::Solved && !state.untouched() {
+        if options.strategy == Strategy::Fairest {
+            relax(&mut state)?;
+        }
         status = state.verify(options)?;
-    } else if status == Status::Solved && !state.untouched() {
-        status = state.verify(options)?;
-    }
-    if state.stopped {
-        status = Status::Interrupted;
     }
     Ok(state.outcome(status))
 }
@@ -90,7 +91,10 @@ impl<'s, 'p, F: TensionFamily> State<'s, 'p, F> {
 
     /// Raises tension until nothing fails.
     fn raise(&mut self, options: &SearchOptions) -> Result<Status, F::Error> {
-        while !self.faults.is_empty() && !self.stopped {
+        while !self.faults.is_empty() {
+            if self.stopped {
+                return Ok(Status::Interrupted);
+            }
             if self.iterations >= options.limit() {
                 return Ok(Status::IterationLimit);
             }
@@ -115,7 +119,7 @@ impl<'s, 'p, F: TensionFamily> State<'s, 'p, F> {
                 return Ok(Status::Solved);
             }
             match self.raise(options)? {
-                Status::Solved if !self.stopped => {}
+                Status::Solved => {}
                 status => return Ok(status),
             }
         }
@@ -173,11 +177,17 @@ impl<'s, 'p, F: TensionFamily> State<'s, 'p, F> {
             after == 0 || *i >= touched[after - 1].end
         });
         let untouched = self.faults.len();
-        for i in touched.iter().flat_map(Clone::clone) {
-            let faults = self.checker.faults(i, self.family.end_legs(i));
-            if !faults.is_empty() {
-                self.faults.push((i, faults));
-            }
+        let (family, checker) = (&*self.family, self.checker);
+        let check = |range: &Range<usize>| {
+            let fault = |i| (i, checker.faults(i, family.end_legs(i)));
+            range.clone().map(fault).filter(|(_, faults)| !faults.is_empty()).collect::<Vec<_>>()
+        };
+        if touched.len() < MANY {
+            self.faults.extend(touched.iter().flat_map(check));
+        } else {
+            let found: Vec<_> =
+                touched.par_iter().with_min_len(MANY / 4).flat_map_iter(check).collect();
+            self.faults.extend(found);
         }
         if untouched > 0 {
             self.faults.sort_unstable_by_key(|f| f.0);

@@ -1,6 +1,8 @@
 //! Data for the tests that need more than one crate.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "test code")]
 
+pub mod generate;
+
 use std::path::Path;
 
 use shapespline::prelude::*;
@@ -47,3 +49,8 @@ pub fn helix(tangent_length: f64) -> DataPolygon {
     let boundary = Boundary::Tangents { start, end };
     DataPolygon::new(points, &Parametrization::Chordal, boundary).unwrap()
 }
+
+/// The Rust example of the project's README is run as a test.
+#[cfg(doctest)]
+#[doc = include_str!("../../../README.md")]
+struct Readme;

@@ -1,4 +1,5 @@
 //! Results printed in paper 001 (specification, section 1), reproduced.
+#![allow(clippy::unwrap_used, reason = "test code")]
 
 use shapespline::prelude::*;
 use shapespline_tests::{feature_line, helix};

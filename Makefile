@@ -1,0 +1,102 @@
+# Every target sets up what it needs; a second run only does what changed.
+#   make demo    shape-preserving curves through real data, printed and drawn to out/demo
+#   make test    the Rust tests, then the Python tests
+#   make check   formatting, lints, stubs, types, documentation, then `make test`: what CI runs
+#   make bench   speed and memory beside SciPy's, as one table
+#   make docs    reference pages of both languages in site/
+#   make clean   forget all of the above
+
+PYTHON ?= python3
+VENV := .venv
+BIN := $(VENV)/bin
+
+# maturin, clippy, doc and test must see one and the same interpreter and build mode: pyo3's build script runs again,
+# and everything above it is compiled again, whenever one of these differs from the last call.
+export PYO3_PYTHON := $(abspath $(BIN)/python)
+export PYO3_BUILD_EXTENSION_MODULE := 1
+export VIRTUAL_ENV := $(abspath $(VENV))
+export PIP_DISABLE_PIP_VERSION_CHECK := 1
+
+# The Rust tests run in the workspace's test profile, not in release mode: it keeps the checks for overflow and the
+# debug assertions, and it needs no link-time optimisation of every test binary. Measured on two cores after a change
+# in shapespline-geometry: seconds, against nearly two minutes. The extension's own crate holds no mathematics and
+# cannot be linked outside Python: pytest is its test.
+CARGO_TEST := cargo test --workspace --exclude shapespline-python
+# Arguments for pytest, for example: make test PYTEST="-k published -x"
+PYTEST ?=
+# Arguments for the benchmark, for example: make bench BENCH=--quick
+BENCH ?=
+
+.PHONY: demo test test-rust test-python check lint-rust lint-python bench docs clean extension cargo
+.DELETE_ON_ERROR:
+
+demo: extension
+	$(BIN)/shapespline demo --out out/demo
+
+test: test-rust test-python
+
+test-rust: cargo
+	$(CARGO_TEST)
+
+test-python: extension
+	$(BIN)/python -m pytest $(PYTEST)
+
+check: lint-rust lint-python test
+
+# A missing component is an installation matter, not a finding: say so before cargo's own, less helpful, words.
+lint-rust: $(VENV)/.python | cargo
+	@cargo fmt --version >/dev/null 2>&1 || { \
+		echo "make: rustfmt is missing; get it with: rustup component add rustfmt" >&2; exit 1; }
+	@cargo clippy --version >/dev/null 2>&1 || { \
+		echo "make: clippy is missing; get it with: rustup component add clippy" >&2; exit 1; }
+	cargo fmt --all --check
+	cargo clippy --workspace --all-targets -- -D warnings
+	RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps
+
+lint-python: extension
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+	$(BIN)/python -m mypy.stubtest shapespline._core
+
+bench: extension
+	$(BIN)/python tests/bench/bench.py $(BENCH)
+
+docs: extension $(VENV)/.docs
+	RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps
+	mkdir -p site
+	rm -rf site/rust site/python
+	cp -r target/doc site/rust
+	$(BIN)/pdoc --docformat numpy --output-directory site/python shapespline
+
+clean:
+	rm -rf $(VENV) target out site .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	rm -f python/shapespline/_core*.so python/shapespline/_core*.pyd
+	find python tests scripts -name __pycache__ -type d -prune -exec rm -rf {} +
+
+# Always asked: maturin and cargo know what changed better than a list of files here would.
+extension: $(VENV)/.requirements | cargo
+	$(BIN)/maturin develop --release
+
+cargo:
+	@command -v cargo >/dev/null || { \
+		echo "make: cargo is missing; install Rust 1.88 or later (rustup does)" >&2; exit 1; }
+
+$(VENV)/.python:
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 10))' || { \
+		echo "make: $(PYTHON) is missing or older than 3.10; name another: make PYTHON=python3.12 $(MAKECMDGOALS)" >&2; \
+		exit 1; }
+	@$(PYTHON) -c 'import ensurepip, venv' 2>/dev/null || { \
+		echo "make: $(PYTHON) has no venv; on Debian and Ubuntu: apt-get install python3-venv" >&2; exit 1; }
+	$(PYTHON) -m venv $(VENV)
+	touch $@
+
+$(VENV)/.requirements: pyproject.toml scripts/requirements.py $(VENV)/.python
+	$(BIN)/python scripts/requirements.py test > $(VENV)/requirements.txt
+	$(BIN)/python -m pip install --quiet --requirement $(VENV)/requirements.txt
+	touch $@
+
+$(VENV)/.docs: pyproject.toml $(VENV)/.requirements
+	$(BIN)/python scripts/requirements.py docs > $(VENV)/requirements-docs.txt
+	$(BIN)/python -m pip install --quiet --requirement $(VENV)/requirements-docs.txt
+	touch $@

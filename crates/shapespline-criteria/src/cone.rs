@@ -1,0 +1,115 @@
+//! Whether a vector quadratic stays inside a double cone: the common form of coplanarity (`ω` around
+//! the plane normal) and collinearity (`γ'` around the line).
+
+use glam::DVec3;
+use shapespline_geometry::bernstein::{
+    Positivity, multiply_quadratics, positivity, quadratic_is_positive,
+};
+
+/// A vector quadratic in Bernstein form.
+pub(crate) type Quadratic = [DVec3; 3];
+
+/// The quadratic on the part `[from, to]` of its interval, by blossoming.
+pub(crate) fn part(v: Quadratic, from: f64, to: f64) -> Quadratic {
+    let blossom = |s: f64, t: f64| v[0].lerp(v[1], s).lerp(v[1].lerp(v[2], s), t);
+    [blossom(from, from), blossom(from, to), blossom(to, to)]
+}
+
+/// `ε²‖v‖² − ‖v × n‖²` as a quartic in Bernstein form, for a unit vector `n`: positive where `v` lies
+/// inside the double cone around `n` whose half angle has the sine `ε` (paper 001, (5.10), (5.22)).
+fn quartic(v: Quadratic, n: DVec3, epsilon: f64) -> [f64; 5] {
+    let across = v.map(|x| x.cross(n));
+    let square = |coordinate: fn(DVec3) -> f64, v: Quadratic| {
+        let c = v.map(coordinate);
+        multiply_quadratics(c, c)
+    };
+    let along = v.map(|x| x.dot(n));
+    let along = multiply_quadratics(along, along);
+    let (x, y, z) = (square(|v| v.x, across), square(|v| v.y, across), square(|v| v.z, across));
+    // ε²‖v‖² − ‖v×n‖² = ε²(v·n)² − (1−ε²)‖v×n‖²: no difference of nearly equal squares.
+    let (inside, outside) = (epsilon * epsilon, (1.0 - epsilon) * (1.0 + epsilon));
+    std::array::from_fn(|i| inside * along[i] - outside * (x[i] + y[i] + z[i]))
+}
+
+/// Whether the vector at an end of its interval lies inside the cone.
+pub(crate) fn end_is_inside(v: DVec3, n: DVec3, epsilon: f64) -> bool {
+    quartic([v; 3], n, epsilon)[0] > 0.0
+}
+
+/// Whether `v` stays inside the double cone on all of its interval.
+///
+/// Inside the cone `v·n` has one sign, and that is asked first: where a planar curve inflects, the
+/// quartic has a double root, which rounding can hide, but `v·n` a simple one, which it cannot.
+pub(crate) fn inside(v: Quadratic, n: DVec3, epsilon: f64) -> Positivity {
+    let [alpha, middle, beta] = v.map(|x| x.dot(n));
+    let sign = alpha.signum();
+    if !quadratic_is_positive(sign * alpha, 2.0 * sign * middle, sign * beta) {
+        return Positivity::Fails { at: axis_crossing(alpha, middle, beta) };
+    }
+    positivity(quartic(v, n, epsilon))
+}
+
+/// Where `v·n`, a quadratic with Bernstein coefficients `[α, m, β]`, first vanishes on `[0, 1]`.
+fn axis_crossing(alpha: f64, m: f64, beta: f64) -> f64 {
+    // α(1−t)² + 2m t(1−t) + βt² = 0: in r = t/(1−t), α + 2m r + β r² = 0.
+    let root = (m * m - alpha * beta).max(0.0).sqrt();
+    let q = -(m + root.copysign(m));
+    let first = |r: f64| if r >= 0.0 { r / (1.0 + r) } else { f64::NAN };
+    let (r1, r2) = (first(alpha / q), first(q / beta));
+    let t = r1.min(r2);
+    if t.is_nan() { if alpha == 0.0 { 0.0 } else { 1.0 } } else { t }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn vector() -> impl Strategy<Value = DVec3> {
+        proptest::array::uniform3(-1.0..1.0f64).prop_map(DVec3::from)
+    }
+
+    fn value(v: Quadratic, t: f64) -> DVec3 {
+        let s = 1.0 - t;
+        v[0] * (s * s) + v[1] * (2.0 * s * t) + v[2] * (t * t)
+    }
+
+    proptest! {
+        #[test]
+        fn a_part_has_the_values_of_the_whole(v in proptest::array::uniform3(vector()), f in 0.0..0.5f64, g in 0.5..1.0f64, t in 0.0..1.0f64) {
+            let expected = value(v, f + (g - f) * t);
+            prop_assert!((value(part(v, f, g), t) - expected).length() < 1e-14);
+        }
+
+        #[test]
+        fn the_verdict_is_that_of_dense_sampling(v in proptest::array::uniform3(vector()), n in vector(), epsilon in 0.05..0.99f64) {
+            prop_assume!(n.length() > 0.1);
+            let n = n.normalize();
+            // Half of the cases close to the axis, where the verdict is open.
+            let near = v.map(|x| n + x * epsilon);
+            for v in [v, near] {
+                let sine = |t: f64| {
+                    let w = value(v, t);
+                    w.cross(n).length() / w.length()
+                };
+                let largest = (0..=2000).map(|k| sine(f64::from(k) / 2000.0)).fold(0.0, f64::max);
+                if (largest - epsilon).abs() > 1e-4 {
+                    prop_assert_eq!(inside(v, n, epsilon).holds(), largest < epsilon);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_planar_inflection_is_outside_wherever_it_lies() {
+        for k in 1..1000 {
+            let root = f64::from(k) / 1000.0 * 0.98 + 0.01;
+            // v·z changes sign at the root and v stays on the axis: the quartic has a double root.
+            let v = [1.0, 1.0 - 0.5 / root, 1.0 - 1.0 / root].map(|z| DVec3::new(0.0, 0.0, z));
+            match inside(v, DVec3::Z, 0.2) {
+                Positivity::Fails { at } => assert!((at - root).abs() < 1e-12, "{root} {at}"),
+                other => panic!("{root}: {other:?}"),
+            }
+        }
+    }
+}

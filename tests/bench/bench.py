@@ -1,0 +1,215 @@
+"""Speed and memory beside SciPy's, measured in one run: ``make bench``.
+
+Every line is a ratio of two measurements made on the same machine, alternately, within seconds of
+each other, so the table can be compared between machines where times cannot. The targets are
+those the project promises; the exit status is 0 whether they are met or not, for a busy machine
+is no error.
+"""
+
+import argparse
+import gc
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from scipy.interpolate import CubicSpline, make_interp_spline
+
+import shapespline as ss
+
+sys.path.insert(0, str(Path(__file__).parent.parent))
+import polygons
+
+
+@dataclass(frozen=True)
+class Line:
+    """One line of the table; ``better`` says which way the ratio must go."""
+
+    what: str
+    ours: str
+    theirs: str
+    ratio: float | None
+    target: str
+    met: bool
+
+    def __str__(self) -> str:
+        ratio = "" if self.ratio is None else f"{self.ratio:.2f}"
+        met = "yes" if self.met else "NO"
+        return f"{self.what:<56}{self.ours:>11}{self.theirs:>11}{ratio:>8}  {self.target:<11}{met}"
+
+
+def seconds(value: float) -> str:
+    """Return a time with a unit that suits it."""
+    for unit, size in (("s", 1.0), ("ms", 1e-3), ("µs", 1e-6)):
+        if value >= size:
+            return f"{value / size:.3g} {unit}"
+    return f"{value / 1e-9:.3g} ns"
+
+
+def best(*calls: Callable[[], object], budget: float = 2.0) -> list[float]:
+    """Return the shortest time of each call, measured in turns until the budget is spent.
+
+    The shortest, because everything else that runs on the machine only adds; in turns, because a
+    slow spell must not fall on one side alone. Short calls are repeated within a measurement.
+    """
+    repeats = []
+    for call in calls:
+        start = time.perf_counter()
+        call()
+        once = time.perf_counter() - start
+        repeats.append(max(1, min(10_000, int(0.005 / max(once, 1e-7)))))
+    shortest = [np.inf] * len(calls)
+    end = time.perf_counter() + budget * len(calls)
+    rounds = 0
+    gc.disable()
+    try:
+        while rounds < 3 or time.perf_counter() < end:
+            for i, call in enumerate(calls):
+                start = time.perf_counter()
+                for _ in range(repeats[i]):
+                    call()
+                shortest[i] = min(shortest[i], (time.perf_counter() - start) / repeats[i])
+            rounds += 1
+    finally:
+        gc.enable()
+    return shortest
+
+
+def faster(what: str, ours: float, theirs: float, least: float) -> Line:
+    """Return the line for a speed-up that must reach ``least``."""
+    ratio = theirs / ours
+    return Line(what, seconds(ours), seconds(theirs), ratio, f"≥ {least:g}×", ratio >= least)
+
+
+def within(what: str, ours: float, limit: float) -> Line:
+    """Return the line for a time that must stay within a limit."""
+    return Line(what, seconds(ours), "", None, f"≤ {seconds(limit)}", ours <= limit)
+
+
+def building(sizes: list[int]) -> Iterator[Line]:
+    """Compare building with given tension to SciPy's C² cubic through the same points.
+
+    SciPy gets the parameters ready made; ours computes its chordal ones as users do.
+    """
+    for count in sizes:
+        points = polygons.gentle_track(count)
+        tension = np.random.default_rng(0).uniform(0, 3, count)
+        u = ss.NuSpline(points).parameters
+        ours, theirs = best(
+            lambda p=points, t=tension: ss.NuSpline(p, tension=t),
+            lambda p=points, u=u: make_interp_spline(u, p, k=3),
+        )
+        yield faster(f"build, N = {count:g}", ours, theirs, 4.0)
+
+
+def preserving(count: int) -> Iterator[Line]:
+    """Compare keeping the shape, violations at under 1 % of the nodes, to the same SciPy build."""
+    points = polygons.gentle_track(count, kinks=0.0008)
+    plain = ss.NuSpline(points)
+    u = plain.parameters
+    violations = plain.check().violations
+    nodes = np.unique([v.segment + k for v in violations for k in (0, 1)])
+    share = len(nodes) / count
+    ours, theirs = best(
+        lambda: ss.NuSpline.shape_preserving(points),
+        lambda: make_interp_spline(u, points, k=3),
+    )
+    what = f"shape_preserving, N = {count:g}, {100 * share:.2f} % of nodes violating"
+    line = faster(what, ours, theirs, 1.0)
+    yield line if 0 < share < 0.01 else Line(what, "", "", None, "0 … 1 %", False)
+
+
+def evaluating(sizes: list[int], queries: int) -> Iterator[Line]:
+    """Compare position and two derivatives at many parameters to SciPy's CubicSpline."""
+    for count in sizes:
+        curve = ss.NuSpline(polygons.gentle_track(count))
+        theirs = CubicSpline(curve.parameters, curve.points, bc_type="natural")
+        u = np.random.default_rng(1).uniform(*curve.parameters[[0, -1]], queries)
+        for order, query in (("sorted", np.sort(u)), ("unsorted", u)):
+
+            def three(spline, query=query):
+                for nu in range(3):
+                    spline(query, nu)
+
+            times = best(lambda c=curve: three(c), lambda c=theirs: three(c))
+            what = f"evaluate f, f', f'' at {queries:g} {order}, N = {count:g}"
+            yield faster(what, *times, 3.0)
+
+
+def overhead() -> Iterator[Line]:
+    """Measure the time of one small fit and of one scalar call from Python."""
+    points = polygons.helix()
+    curve = ss.NuSpline(points)
+    fit, call = best(lambda: ss.NuSpline(points), lambda: curve(1.5), budget=1.0)
+    yield within("one fit of 25 points", fit, 30e-6)
+    yield within("one scalar call", call, 2e-6)
+
+
+# The peak of a process is one number, so each fit runs in one of its own. What the interpreter,
+# the modules and the points themselves took before the fit does not count.
+MEMORY = """
+import resource, sys
+import numpy as np, shapespline as ss
+import polygons
+points = polygons.gentle_track(int(sys.argv[1]), kinks=0.0008)
+ss.NuSpline.shape_preserving(points[:100])
+with open("/proc/self/clear_refs", "w") as peak:
+    peak.write("5")  # forget the peak of making the points
+def peak():
+    with open("/proc/self/status") as status:
+        values = dict(line.split(":", 1) for line in status)
+    return [1024 * int(values[key].split()[0]) for key in ("VmHWM", "VmRSS")]
+before = peak()[1]
+fit = ss.NuSpline.shape_preserving if sys.argv[2] == "preserve" else ss.NuSpline
+curve = fit(points)
+print((peak()[0] - before) / points.nbytes)
+"""
+
+
+def memory(count: int) -> Iterator[Line]:
+    """Measure the peak memory of a fit relative to the size of its points."""
+    for kind in ("given", "preserve"):
+        done = subprocess.run(
+            [sys.executable, "-c", MEMORY, str(count), kind],
+            capture_output=True,
+            text=True,
+            check=False,
+            cwd=Path(__file__).parent.parent,
+        )
+        what = f"peak memory of a fit ({kind}), N = {count:g}, × input"
+        if done.returncode:
+            reason = done.stderr.strip().splitlines()[-1][:40]
+            yield Line(f"{what}: {reason}", "", "", None, "≤ 10×", False)
+            continue
+        ratio = float(done.stdout)
+        yield Line(what, f"{ratio:.2f}×", "", ratio, "≤ 10×", ratio <= 10)
+
+
+def main() -> int:
+    """Print the table line by line as it is measured."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--quick", action="store_true", help="smaller sizes only: under a minute")
+    quick = parser.parse_args().quick
+    print(f"{'what':<56}{'ours':>11}{'SciPy':>11}{'ratio':>8}  {'target':<11}met")
+    largest = 100_000 if quick else 1_000_000
+    sizes = [n for n in (1_000, 10_000, 100_000, 1_000_000) if n <= largest]
+    lines = []
+    for part in (
+        building(sizes),
+        preserving(largest),
+        evaluating([25, *sizes], largest),
+        overhead(),
+        memory(largest),
+    ):
+        for line in part:
+            print(line, flush=True)
+            lines.append(line)
+    print(f"{sum(line.met for line in lines)} of {len(lines)} targets met")
+    return 0
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())

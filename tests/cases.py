@@ -1,0 +1,95 @@
+"""What to fit: data sets with their ends, ready to be passed to a curve's constructor."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import numpy.typing as npt
+
+import polygons
+import shapespline as ss
+
+STRATEGIES = ("nussp", "growth", "fairest")
+
+
+@dataclass(frozen=True)
+class Case:
+    """Arguments of a fit, and the changes of coordinates that it must be indifferent to."""
+
+    name: str
+    points: npt.NDArray[np.float64]
+    parameters: object = "chordal"
+    boundary: object = "zero-curvature"
+
+    def __str__(self) -> str:
+        return self.name
+
+    def fit(self, **options: object) -> ss.NuSpline:
+        """Return the ν-spline with given tension."""
+        return ss.NuSpline(self.points, self.parameters, boundary=self.boundary, **options)
+
+    def preserve(self, **options: object) -> ss.NuSpline:
+        """Return the shape-preserving ν-spline."""
+        return ss.NuSpline.shape_preserving(
+            self.points, self.parameters, boundary=self.boundary, **options
+        )
+
+    def explicit(self) -> "Case":
+        """Return the same case with its parameters as an array."""
+        return replace(self, parameters=self.fit().parameters)
+
+    def moved(self, points: npt.NDArray[np.float64], vectors=lambda v: v) -> "Case":
+        """Return the case with other points, and its end tangents passed through ``vectors``."""
+        boundary = self.boundary
+        if isinstance(boundary, ss.Tangents):
+            boundary = ss.Tangents(vectors(boundary.start), vectors(boundary.end))
+        return replace(self, points=points, boundary=boundary)
+
+    def reversed(self) -> "Case":
+        """Return the case traversed backwards, with explicit parameters."""
+        u = self.fit().parameters
+        boundary = self.boundary
+        if isinstance(boundary, ss.Tangents):
+            boundary = ss.Tangents(-boundary.end, -boundary.start)
+        return Case(self.name, self.points[::-1], (u[-1] + u[0]) - u[::-1], boundary)
+
+
+def space_set(name: str, end: str) -> Case:
+    """Return one of ``polygons.SPACE_SETS``; the GM line comes with its parameters."""
+    columns = polygons.load(name)
+    parameters = columns.get("u", "chordal")
+    boundary = ss.Tangents(*polygons.GM_TANGENTS) if end == "tangents" else end
+    return Case(f"{name}, {end}", polygons.load_points(name), parameters, boundary)
+
+
+def gm_line() -> Case:
+    """Return Karavelas & Kaklis 2000, Example 2."""
+    return space_set("gm_feature_line", "tangents")
+
+
+def helix(length: float = 6.0) -> Case:
+    """Return Karavelas & Kaklis 2000, Example 1, with end tangents of the given length."""
+    return Case("helix", polygons.helix(), "chordal", ss.Tangents(*polygons.helix_tangents(length)))
+
+
+def shared() -> list[Case]:
+    """Return every space curve of tests/data with its ends, and the helix."""
+    return [*(space_set(*pair) for pair in polygons.SPACE_SETS), helix()]
+
+
+def small() -> list[Case]:
+    """Return one case for each kind of end and both dimensions, small enough for every strategy."""
+    rng = np.random.default_rng(3)
+    walk = polygons.random_walk(rng, 14)
+    plane = polygons.random_walk(rng, 14, 2)
+    return [
+        gm_line(),
+        helix(),
+        space_set("protein_1a8o_ca", "zero-curvature"),
+        Case("coil", polygons.load_points("coil_m16n08_first"), "chordal", "periodic"),
+        Case("walk, zero curvature", walk),
+        Case("walk, circular, centripetal", walk, "centripetal", "circular"),
+        Case("walk, closed", polygons.close(walk), "chordal", "periodic"),
+        Case("plane, zero curvature", plane),
+        Case("plane, closed", polygons.close(plane), "uniform", "periodic"),
+        Case("plane, tangents", plane, "chordal", ss.Tangents([1.0, 0.5], [-0.2, 2.0])),
+    ]

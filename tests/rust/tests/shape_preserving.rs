@@ -1,0 +1,153 @@
+//! Shape-preserving ν-splines on data that have been hard for somebody.
+//!
+//! The verdicts here are the library's own; `tests/test_shape_preserving.py` checks the same kinds of
+//! data by dense sampling.
+#![allow(clippy::unwrap_used, reason = "test code")]
+
+use shapespline::prelude::*;
+use shapespline_tests::{
+    feature_line,
+    generate::{Kind, Random},
+    helix, points,
+};
+
+fn polygon(kind: Kind, case: usize, random: &mut Random) -> Option<DataPolygon> {
+    let n = 2 + random.below(50);
+    let mut points = kind.points(n, random);
+    let boundary = match case % 4 {
+        0 if n > 2 => Boundary::Circular,
+        1 if n > 2 => {
+            if points[n - 1] != points[0] {
+                points.push(points[0]);
+            }
+            Boundary::Periodic
+        }
+        2 => Boundary::Tangents { start: random.vector(), end: random.vector() },
+        _ => Boundary::ZeroCurvature,
+    };
+    let parametrization = match case % 3 {
+        0 => Parametrization::Uniform,
+        1 => Parametrization::Chordal,
+        _ => Parametrization::Centripetal,
+    };
+    // A walk may happen to step back onto its neighbour.
+    DataPolygon::new(points, &parametrization, boundary).ok()
+}
+
+fn options(strategy: Strategy) -> SearchOptions {
+    SearchOptions { strategy, ..SearchOptions::default() }
+}
+
+#[test]
+fn every_kind_of_polygon_is_solved_and_fairest_needs_no_more_tension_than_growth() {
+    let mut random = Random::new(11);
+    for kind in Kind::ALL {
+        for case in 0..250 {
+            let Some(polygon) = polygon(kind, case, &mut random) else { continue };
+            let growth =
+                NuSpline::shape_preserving(polygon.clone(), &options(Strategy::Growth)).unwrap();
+            let fairest = NuSpline::shape_preserving(polygon, &options(Strategy::Fairest)).unwrap();
+            for fit in [&growth, &fairest] {
+                let name = format!("{kind:?} {case}: {:?}", fit.outcome.diagnostics);
+                assert_eq!(fit.outcome.diagnostics.status, Status::Solved, "{name}");
+                let report = fit.curve.check(Criteria::ALL, Tolerances::default()).unwrap();
+                assert!(report.ok(), "{name}\n{report}");
+                assert_eq!(report, fit.report);
+            }
+            let total = |fit: &Fit<NuSpline>| fit.curve.tension().iter().sum::<f64>();
+            assert!(
+                total(&fairest) <= total(&growth),
+                "{kind:?} {case}: {:?} {:?}",
+                fairest.outcome,
+                growth.outcome
+            );
+        }
+    }
+}
+
+/// The connected runs of positive tension, as ranges of nodes (none of these data is closed).
+fn runs(tension: &[f64]) -> Vec<std::ops::Range<usize>> {
+    let mut found: Vec<std::ops::Range<usize>> = Vec::new();
+    for (i, _) in tension.iter().enumerate().filter(|(_, t)| **t > 0.0) {
+        match found.last_mut() {
+            Some(run) if run.end == i => run.end += 1,
+            _ => found.push(i..i + 1),
+        }
+    }
+    found
+}
+
+#[test]
+fn no_run_of_a_fairest_tension_can_be_lowered_by_one_percent() {
+    let chordal = |name| {
+        DataPolygon::new(points(name), &Parametrization::Chordal, Boundary::ZeroCurvature).unwrap()
+    };
+    let mut sets = vec![
+        feature_line(),
+        helix(6.0),
+        chordal("gps_mojstrovka.csv"),
+        chordal("protein_1a8o_ca.csv"),
+        chordal("coil_m16n08_first.csv"),
+    ];
+    let mut random = Random::new(5);
+    sets.extend((0..60).filter_map(|case| polygon(Kind::ALL[case % 8], 3, &mut random)));
+    let mut tested = 0;
+    for polygon in sets {
+        let fit = NuSpline::shape_preserving(polygon.clone(), &options(Strategy::Fairest)).unwrap();
+        for run in runs(fit.curve.tension()) {
+            let mut tension = fit.curve.tension().to_vec();
+            tension[run.clone()].iter_mut().for_each(|t| *t *= 0.99);
+            let lower = NuSpline::new(polygon.clone(), Tension::Nodes(&tension)).unwrap();
+            let report = lower.check(Criteria::ALL, Tolerances::default()).unwrap();
+            assert!(!report.ok(), "run {run:?} of {:?} can be lowered", fit.curve.tension());
+            tested += 1;
+        }
+    }
+    assert!(tested > 100, "{tested}");
+}
+
+#[test]
+fn a_limit_of_iterations_is_reported_with_the_last_curve() {
+    let options = SearchOptions { max_iterations: Some(2), ..options(Strategy::Nussp) };
+    let fit = NuSpline::shape_preserving(helix(6.0), &options).unwrap();
+    assert_eq!(fit.outcome.diagnostics.status, Status::IterationLimit);
+    assert_eq!(fit.outcome.diagnostics.iterations, 2);
+    assert!(!fit.report.ok());
+    assert_eq!(fit.report, fit.curve.check(Criteria::ALL, Tolerances::default()).unwrap());
+}
+
+#[test]
+fn a_monitor_sees_every_step_and_can_stop() {
+    let mut seen = 0;
+    let fit = NuSpline::shape_preserving_with(helix(6.0), &options(Strategy::Nussp), &mut |_| {
+        seen += 1;
+        if seen == 3 {
+            std::ops::ControlFlow::Break(())
+        } else {
+            std::ops::ControlFlow::Continue(())
+        }
+    })
+    .unwrap();
+    assert_eq!(fit.outcome.diagnostics.status, Status::Interrupted);
+    assert_eq!((seen, fit.outcome.history.len()), (3, 3));
+}
+
+#[test]
+fn a_million_points_with_kinks() {
+    let mut random = Random::new(3);
+    let mut p = DVec3::ZERO;
+    let points: Vec<DVec3> = (0..1_000_000)
+        .map(|i| {
+            let t = 0.1 * f64::from(i);
+            let kink = if random.below(1000) == 0 { random.vector() } else { DVec3::ZERO };
+            p += DVec3::new(t.cos(), t.sin(), 0.3) + kink;
+            p
+        })
+        .collect();
+    let polygon =
+        DataPolygon::new(points, &Parametrization::Chordal, Boundary::ZeroCurvature).unwrap();
+    let fit = NuSpline::shape_preserving(polygon, &SearchOptions::default()).unwrap();
+    assert!(fit.report.ok());
+    let diagnostics = fit.outcome.diagnostics;
+    assert!(diagnostics.nodes_changed > 1000 && diagnostics.nodes_changed < 50_000);
+}

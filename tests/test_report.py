@@ -1,0 +1,110 @@
+"""The shape report: what it says, in all its forms, against what sampling finds."""
+
+import json
+
+import numpy as np
+import pytest
+
+import cases
+import shapespline as ss
+from shape_by_sampling import CRITERIA, of_curve
+
+SHARED = cases.shared()
+
+
+@pytest.fixture
+def broken():
+    """Return the report of the GM line's C² cubic: four violations."""
+    return cases.gm_line().fit().check()
+
+
+@pytest.mark.parametrize("case", [*SHARED, *cases.small()], ids=str)
+def test_sampling_finds_nothing_that_the_report_misses(case):
+    curve = case.fit()
+    report, sampled = curve.check(), of_curve(curve)
+    reported = {(v.criterion, v.segment) for v in report.violations}
+    assert set(sampled.violations) <= reported
+    assert report.ok == (not reported)
+    # Sampling can overlook a violation, but only a small one.
+    overlooked = reported - set(sampled.violations)
+    margins = {(v.criterion, v.segment): v.margin for v in report.violations}
+    assert all(margins[key] > -1e-3 for key in overlooked)
+
+
+@pytest.mark.parametrize("case", [*SHARED, *cases.small()], ids=str)
+def test_each_segment_is_asked_what_its_polygon_calls_for(case):
+    curve = case.fit()
+    sampled = of_curve(curve)
+    asked = {(r.criterion, r.segment) for r in curve.check().segments if r.applicable}
+    expected = {
+        (name, int(i)) for name in CRITERIA for i in np.flatnonzero(sampled.applicable[name])
+    }
+    assert asked == expected
+
+
+def test_records(broken):
+    assert isinstance(broken, ss.ShapeReport)
+    for record in broken.segments:
+        assert isinstance(record.segment, int)
+        assert 0 <= record.segment < 19
+        assert record.criterion in CRITERIA
+        if record.applicable:
+            assert record.satisfied == (record.margin > 0)
+    violations = [r for r in broken.segments if r.applicable and not r.satisfied]
+    assert [(v.criterion, v.segment) for v in broken.violations] == [
+        (v.criterion, v.segment) for v in violations
+    ]
+
+
+def test_margin_is_the_worst_of_all(broken):
+    assert broken.margin == min(r.margin for r in broken.segments if r.applicable)
+    assert broken.margin < 0 < cases.gm_line().preserve().check().margin
+
+
+def test_margin_does_not_depend_on_scale(broken):
+    case = cases.gm_line()
+    scaled = case.moved(case.points * 1e60, lambda v: v * 1e60).fit().check()
+    margins = [r.margin for r in broken.segments if r.applicable]
+    found = [r.margin for r in scaled.segments if r.applicable]
+    np.testing.assert_allclose(found, margins, rtol=1e-6, atol=1e-12)
+
+
+def test_counts_add_up(broken):
+    for name, (violated, asked) in broken.counts().items():
+        records = [r for r in broken.segments if r.criterion == name and r.applicable]
+        assert asked == len(records)
+        assert violated == sum(not r.satisfied for r in records)
+    assert sum(violated for violated, _ in broken.counts().values()) == 4
+
+
+def test_print_shows_a_table_and_names_what_is_wrong(broken):
+    text = str(broken)
+    assert len(text.splitlines()) >= 3
+    for name in ("convexity", "torsion"):
+        row = next(line for line in text.splitlines() if name in line)
+        violated, asked = broken.counts()[name]
+        assert str(violated) in row
+        assert str(asked) in row
+
+
+def test_to_dict_is_plain_data(broken):
+    # allow_nan=False: a margin that does not exist must be None, which other languages can read.
+    plain = json.loads(json.dumps(broken.to_dict(), allow_nan=False))
+    assert plain["ok"] is False
+    assert len(plain["segments"]) == len(broken.segments)
+    keys = {"segment", "criterion", "applicable", "satisfied", "margin", "location"}
+    assert all(keys <= set(record) for record in plain["segments"])
+
+
+def test_the_report_is_true_of_tension_given_by_hand():
+    """Enough tension mends everything but what the end tangents spoil."""
+    case = cases.gm_line()
+    assert not case.fit().check().ok
+    assert case.fit(tension=100.0).check().ok
+
+
+def test_straight_data_have_nothing_to_violate():
+    report = ss.NuSpline([[0, 0], [1, 1], [3, 3], [4, 4]]).check()
+    assert report.ok
+    assert {r.criterion for r in report.segments if r.applicable} == {"collinearity"}
+    assert report.undecided == []

@@ -1,0 +1,143 @@
+"""No violation on any data: checked by sampling, which shares no code with the solver."""
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import cases
+import polygons
+import shapespline as ss
+from shape_by_sampling import of_curve, shape_by_sampling
+
+# Polygons a family and kind of end: with 13 families and 4 ends some thousands in all.
+POLYGONS = 60
+
+
+def assert_shape(curve, **options):
+    """Check by sampling, and that the library's own exact verdict is the same."""
+    assert np.isfinite(curve.tangents).all()
+    assert np.all(curve.tension >= 0)
+    assert np.isfinite(curve.tension).all()
+    assert of_curve(curve, **options).violations == []
+    assert curve.check().ok
+
+
+@pytest.mark.parametrize("strategy", ["growth", "fairest"])
+@pytest.mark.parametrize("case", [*cases.shared(), *cases.small()], ids=str)
+def test_shared_data(case, strategy):
+    assert_shape(case.preserve(strategy=strategy))
+
+
+@pytest.mark.parametrize("case", cases.shared(), ids=str)
+def test_the_plain_cubic_does_break_the_shape_of_the_shared_data(case):
+    """Otherwise the test above would show nothing."""
+    assert of_curve(case.fit()).violations
+
+
+def ended(points, end, rng):
+    """Return points and boundary for a kind of end; ``None`` where it needs more points."""
+    if end == "periodic":
+        if np.array_equal(points[0], points[-1]):
+            points = points[:-1]
+        points = polygons.close(points)
+    if end == "tangents":
+        dim = points.shape[1]
+        return points, ss.Tangents(rng.normal(size=dim), rng.normal(size=dim))
+    if len(points) < 3 and end in ("periodic", "circular"):
+        return None
+    return points, end
+
+
+@pytest.mark.parametrize("end", ["zero-curvature", "periodic", "circular", "tangents"])
+@pytest.mark.parametrize("family", polygons.FAMILIES)
+def test_generated_polygons(family, end):
+    rng = np.random.default_rng([len(family), len(end)])
+    for number in range(POLYGONS):
+        points = polygons.FAMILIES[family](rng, int(rng.integers(4, 40)))
+        if (case := ended(points, end, rng)) is None:
+            continue
+        points, boundary = case
+        curve = ss.NuSpline.shape_preserving(points, boundary=boundary)
+        found = of_curve(curve)
+        assert found.violations == [], f"polygon {number}"
+        assert curve.check().ok, f"polygon {number}"
+        np.testing.assert_array_equal(curve.points, points)
+
+
+@pytest.mark.parametrize("parameters", ["uniform", "centripetal", 0.75])
+@pytest.mark.parametrize("family", ["random walk", "uneven chords", "lattice walk"])
+def test_other_parametrisations(family, parameters):
+    rng = np.random.default_rng(11)
+    for _ in range(POLYGONS // 4):
+        points = polygons.FAMILIES[family](rng, 20)
+        assert_shape(ss.NuSpline.shape_preserving(points, parameters))
+
+
+@given(st.lists(st.tuples(*[st.integers(-2, 2)] * 3), min_size=2, max_size=9))
+def test_any_lattice_polygon_is_fitted_or_refused_for_the_one_reason(points):
+    """Small integers: exactly straight, flat, perpendicular and reversed pieces all the time."""
+    repeated = any(a == b for a, b in pairwise(points))
+    if repeated:
+        with pytest.raises(ValueError, match="points"):
+            ss.NuSpline.shape_preserving(points)
+    else:
+        assert_shape(ss.NuSpline.shape_preserving(points))
+
+
+def test_exact_reversal_on_a_line():
+    """A turn by 180° calls for nothing: the plain cubic must be returned, with zero tension."""
+    points = np.array([[0.0, 0, 0], [2, 0, 0], [1, 0, 0], [4, 0, 0]])
+    curve = ss.NuSpline.shape_preserving(points)
+    np.testing.assert_array_equal(curve.tension, 0.0)
+    np.testing.assert_array_equal(curve(np.linspace(*curve.parameters[[0, -1]], 50))[:, 1:], 0.0)
+
+
+def test_data_that_need_no_tension_get_none(rng):
+    theta = np.linspace(0, 5, 40)
+    arc = np.column_stack([np.cos(theta), np.sin(theta)])
+    for strategy in cases.STRATEGIES:
+        curve = ss.NuSpline.shape_preserving(arc, boundary="circular", strategy=strategy)
+        np.testing.assert_array_equal(curve.tension, 0.0)
+        assert curve.diagnostics.iterations == 1
+
+
+@pytest.mark.parametrize("criterion", ["convexity", "inflection", "torsion", "coplanarity"])
+def test_only_the_criteria_asked_for_are_met_and_reported(criterion):
+    case = cases.space_set("gps_mojstrovka", "zero-curvature")
+    curve = case.preserve(criteria=[criterion], strategy="growth")
+    found = of_curve(curve)
+    assert not found.violated[criterion].any()
+    assert {r.criterion for r in curve.check(criteria=[criterion]).segments} == {criterion}
+
+
+def test_tighter_tolerances_are_kept():
+    case = cases.helix()
+    curve = case.preserve(coplanarity=0.02, collinearity=0.02)
+    assert_shape(curve, coplanarity_sine=0.02, collinearity_sine=0.02)
+    assert curve.check(coplanarity=0.02, collinearity=0.02).ok
+    # The loose fit does not satisfy the tight tolerance, or the test would show nothing.
+    assert not case.preserve().check(coplanarity=0.02).ok
+
+
+def test_a_million_points():
+    """Sampled in overlapping pieces, which a criterion of four points cannot notice."""
+    count, piece = 1_000_000, 50_000
+    points = polygons.gentle_track(count)
+    plain = ss.NuSpline(points).check()
+    assert 0 < len(plain.violations) < 0.03 * count
+    curve = ss.NuSpline.shape_preserving(points)
+    u = curve.parameters
+    for start in range(0, count - 1, piece):
+        part = slice(max(start - 1, 0), min(start + piece + 2, count))
+        found = shape_by_sampling(
+            points[part],
+            u[part],
+            None,
+            lambda v, order, side: curve(v, order, side=side),
+            count=9,
+        )
+        assert found.violations == [], start
+    assert curve.check().ok
