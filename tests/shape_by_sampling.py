@@ -234,21 +234,21 @@ def coplanarity(polygon: Polygon, s: Samples, sine: float) -> npt.NDArray[np.boo
     In the inflection case the middle of the segment is left out, as in section 5: the parts are
     [u_m, (u_m + u*)/2] and [(u* + u_{m+1})/2, u_{m+1}].
     """
-    normals = polygon.binormals[:-1]
-    size = norm(normals)[:, None]
-    normals = normals / np.where(size > 0, size, 1.0)
-    lean = norm(np.cross(s.omega, normals[:, None])) - sine * norm(s.omega)
-    along, noise = sign_against(s, normals)
-    # The binormal's own direction is uncertain by its rounding over its size.
-    noise = noise + ROUNDING * norm(s.omega) / np.where(size > 0, size, 1.0)
     middle = separating_point(polygon)[:, None]
     convex = (polygon.turning > 0)[:, None]
     parts = (convex | (s.t <= middle / 2), ~convex & (s.t >= (1 + middle) / 2))
     bad = np.zeros(len(s.first), dtype=bool)
-    for part in parts:
-        bad |= np.any(part & (lean > noise), axis=1)
-        # Within the cone around a line, ω can only change sides through zero.
-        bad |= np.any(part & (along > noise), axis=1) & np.any(part & (along < -noise), axis=1)
+    for normals in (polygon.binormals[:-1], polygon.binormals[1:]):
+        size = norm(normals)[:, None]
+        normals = normals / np.where(size > 0, size, 1.0)
+        lean = norm(np.cross(s.omega, normals[:, None])) - sine * norm(s.omega)
+        along, noise = sign_against(s, normals)
+        # The binormal's own direction is uncertain by its rounding over its size.
+        noise = noise + ROUNDING * norm(s.omega) / np.where(size > 0, size, 1.0)
+        for part in parts:
+            bad |= np.any(part & (lean > noise), axis=1)
+            # Within the cone around a line, ω can only change sides through zero.
+            bad |= np.any(part & (along > noise), axis=1) & np.any(part & (along < -noise), axis=1)
     return bad
 
 

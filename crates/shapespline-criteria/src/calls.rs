@@ -170,10 +170,3 @@ pub fn separation(polygon: &DataPolygon, segment: usize) -> f64 {
     let q = polygon.binormal(segment + 1).length() * neighbour(segment, false);
     1.0 / (1.0 + (q / p).sqrt() * (h_before / h_after).powf(0.75))
 }
-
-/// Direction of the plane normal of a coplanar quadruple: the mean of its two binormal directions,
-/// so that it does not depend on the direction the points are run through.
-pub(crate) fn plane_normal(p: DVec3, q: DVec3) -> DVec3 {
-    let (p, q) = (p.normalize_or_zero(), q.normalize_or_zero());
-    (if p.dot(q) < 0.0 { p - q } else { p + q }).normalize_or_zero()
-}

@@ -6,7 +6,7 @@ use shapespline_geometry::DataPolygon;
 
 use crate::{
     Calls, Criteria, Criterion, Faults, Record, ShapeReport, Tolerances,
-    calls::{plane_normal, separation},
+    calls::separation,
     faults::{Cones, Situation, cone_faults, sign_faults},
     margin,
 };
@@ -159,7 +159,7 @@ impl<'a> Checker<'a> {
             (before + after).normalize_or_zero()
         };
         Cones {
-            plane: (self.tolerances.coplanarity, plane_normal(s.p, s.q)),
+            plane: (self.tolerances.coplanarity, [s.p, s.q].map(DVec3::normalize_or_zero)),
             parts,
             line: (self.tolerances.collinearity, [line(i), line(i + 1)]),
         }

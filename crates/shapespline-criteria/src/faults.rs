@@ -133,8 +133,9 @@ impl Situation {
 /// What the coplanarity and collinearity conditions need beyond the legs.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Cones {
-    /// `ε₁` and the plane normal.
-    pub(crate) plane: (f64, DVec3),
+    /// `ε₁` and the unit binormal vectors at the two nodes: both are normals of the plane, up to the
+    /// tolerance of `Γ = 0`, and (2.5) is asked of both.
+    pub(crate) plane: (f64, [DVec3; 2]),
     /// `t^ℓ, t^r`: the parts `[0, t^ℓ]` and `[t^r, 1]` of a split coplanarity.
     pub(crate) parts: [f64; 2],
     /// `ε₀` and the line directions at the two nodes.
@@ -174,24 +175,22 @@ pub(crate) fn sign_faults(s: &Situation, calls: Calls) -> Faults {
 pub(crate) fn cone_faults(s: &Situation, calls: Calls, cones: &Cones) -> Faults {
     let mut faults = Faults::default();
     if calls.any(Calls::COPLANARITY.and(Calls::SPLIT_COPLANARITY)) {
-        let (epsilon, normal) = cones.plane;
+        let (epsilon, normals) = cones.plane;
+        let end_is_near = |w: DVec3| normals.iter().all(|&n| end_is_inside(w, n, epsilon));
+        let is_near = |w: Quadratic| normals.iter().all(|&n| inside(w, n, epsilon).holds());
         let omega = s.omega_quadratic();
-        let start = end_is_inside(omega[0], normal, epsilon);
-        let end = end_is_inside(omega[2], normal, epsilon);
+        let (start, end) = (end_is_near(omega[0]), end_is_near(omega[2]));
         faults.add(Faults::COPLANARITY_AT_START, !start);
         faults.add(Faults::COPLANARITY_AT_END, !end);
         if calls.any(Calls::COPLANARITY) {
-            let between = start && end && !inside(omega, normal, epsilon).holds();
-            faults.add(Faults::COPLANARITY_BETWEEN, between);
+            faults.add(Faults::COPLANARITY_BETWEEN, start && end && !is_near(omega));
         } else {
             // A failure at the node itself is the fault above; here it is the rest of each part.
             let [left, right] = cones.parts;
-            let inner = |v: Quadratic, node: bool, far: DVec3| {
-                let holds = || inside(v, normal, epsilon).holds();
-                !end_is_inside(far, normal, epsilon) || (node && !holds())
-            };
             let (first, last) = (part(omega, 0.0, left), part(omega, right, 1.0));
-            let split = inner(first, start, first[2]) || inner(last, end, last[0]);
+            let fails =
+                |v: Quadratic, node: bool, far: DVec3| !end_is_near(far) || (node && !is_near(v));
+            let split = fails(first, start, first[2]) || fails(last, end, last[0]);
             faults.add(Faults::COPLANARITY_SPLIT, split);
         }
     }

@@ -69,9 +69,11 @@ pub(crate) fn torsion(s: &Situation, calls: Calls) -> Margin {
 }
 
 pub(crate) fn coplanarity(s: &Situation, calls: Calls, cones: &Cones) -> Margin {
-    let (epsilon, normal) = cones.plane;
+    let (epsilon, [p, q]) = cones.plane;
     let over = |from: f64, to: f64| {
-        cone_margin(epsilon, normal, (from, to), part(s.omega_quadratic(), from, to))
+        let omega = part(s.omega_quadratic(), from, to);
+        let margin = |normal| cone_margin(epsilon, normal, (from, to), omega);
+        margin(p).least(margin(q))
     };
     if calls.any(Calls::COPLANARITY) {
         over(0.0, 1.0)

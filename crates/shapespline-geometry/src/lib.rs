@@ -28,7 +28,7 @@ mod vector;
 pub use arc_length::ArcLength;
 pub use boundary::Boundary;
 pub use error::InputError;
-pub use frame::{Frame, curvature, curvature_vector, frame, torsion};
+pub use frame::Frame;
 pub use glam::DVec3;
 pub use locate::{Locator, Side};
 pub use parametrization::Parametrization;

@@ -2,7 +2,7 @@
 
 use pyo3::{IntoPyObjectExt, prelude::*};
 use rayon::prelude::*;
-use shapespline::geometry::{self, DVec3, Side};
+use shapespline::geometry::{DVec3, Side};
 
 use super::{Curve, SpaceCurve};
 use crate::{
@@ -184,8 +184,8 @@ impl SpaceCurve {
         #[pyo3(from_py_with = options::side)] side: Side,
     ) -> PyResult<Bound<'py, PyAny>> {
         self.scalar(py, &u, move |curve, u| {
-            let [first, second, _] = curve.derivatives(u, side);
-            geometry::curvature(first, second)
+            let (segment, t) = curve.cubic().locate(u, side);
+            curve.cubic().segment(segment).curvature(t)
         })
     }
 
@@ -216,8 +216,8 @@ impl SpaceCurve {
         #[pyo3(from_py_with = options::side)] side: Side,
     ) -> PyResult<FloatArray<'py>> {
         self.vectors(py, &u, self.columns(), move |curve, u| {
-            let [first, second, _] = curve.derivatives(u, side);
-            geometry::curvature_vector(first, second)
+            let (segment, t) = curve.cubic().locate(u, side);
+            curve.cubic().segment(segment).curvature_vector(t)
         })
     }
 
@@ -252,8 +252,8 @@ impl SpaceCurve {
         #[pyo3(from_py_with = options::side)] side: Side,
     ) -> PyResult<Bound<'py, PyAny>> {
         self.scalar(py, &u, move |curve, u| {
-            let [first, second, third] = curve.derivatives(u, side);
-            geometry::torsion(first, second, third)
+            let (segment, t) = curve.cubic().locate(u, side);
+            curve.cubic().segment(segment).torsion(t)
         })
     }
 
@@ -287,8 +287,8 @@ impl SpaceCurve {
         #[pyo3(from_py_with = options::side)] side: Side,
     ) -> PyResult<(FloatArray<'py>, FloatArray<'py>, FloatArray<'py>)> {
         let frame = move |curve: &dyn Curve, u: f64| {
-            let [first, second, _] = curve.derivatives(u, side);
-            geometry::frame(first, second)
+            let (segment, t) = curve.cubic().locate(u, side);
+            curve.cubic().segment(segment).frame(t)
         };
         Ok((
             self.vectors(py, &u, 3, move |curve, u| frame(curve, u).tangent)?,

@@ -55,11 +55,6 @@ pub(crate) trait Curve: Debug + Send + Sync {
     ) -> Result<(), InputError> {
         self.cubic().evaluate_many(u, order, side, out)
     }
-
-    /// The first three derivatives at one parameter.
-    fn derivatives(&self, u: f64, side: Side) -> [DVec3; 3] {
-        self.cubic().derivatives(u, side)
-    }
 }
 
 impl Curve for NuSpline {
