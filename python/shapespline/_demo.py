@@ -7,7 +7,7 @@ import time
 from contextlib import contextmanager
 from dataclasses import dataclass
 from importlib import resources
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import matplotlib as mpl
 import numpy as np
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 CUBIC = "#c8442f"
-STYLE = {
+STYLE: dict[Any, Any] = {
     "font.size": 9,
     "axes.titlesize": 10,
     "axes.titleweight": "bold",
@@ -158,42 +158,102 @@ def _fit(data: DataSet) -> tuple[NuSpline, NuSpline]:
     return cubic, kept
 
 
-def _equal_scales(ax: Axes, points: Floats) -> None:
-    """Give the three axes one scale, and leave the box without ticks that nobody reads."""
-    low, high = points.min(axis=0), points.max(axis=0)
-    middle, size = (low + high) / 2, np.maximum(high - low, 0.25 * (high - low).max())
-    limits = zip("xyz", middle - 0.52 * size, middle + 0.52 * size, strict=True)
+def _window(report: ShapeReport, segments: int, length: int = 20) -> tuple[int, int]:
+    """Return the stretch of segments, not longer than can be seen, with the most violations."""
+    if segments <= 1.5 * length:
+        return 0, segments
+    violated = np.bincount([v.segment for v in report.violations], minlength=segments)
+    inside = np.convolve(violated, np.ones(length), "valid")
+    # In the middle of equals, so that what is wrong is not at the rim.
+    best = np.flatnonzero(inside == inside.max())
+    first = int(best[len(best) // 2])
+    return first, first + length
+
+
+def _along(c: SpaceCurve, first: float, last: float) -> Floats:
+    """Return a stretch of the curve as columns of coordinates."""
+    return c(np.linspace(first, last, 800)).T
+
+
+def _scene(ax: Axes, corners: Floats, view: tuple[float, float]) -> None:
+    """Show what lies between the corners with one scale for all axes, and nothing else."""
+    low, high = corners.min(axis=0), corners.max(axis=0)
+    middle, size = (low + high) / 2, np.maximum(high - low, 0.02 * (high - low).max())
+    limits = zip("xyz", middle - size / 2, middle + size / 2, strict=True)
     ax.set(**{f"{axis}lim": (a, b) for axis, a, b in limits})
-    ax.set_box_aspect(size, zoom=1.25)  # type: ignore[call-arg, arg-type]
-    for axis in (ax.xaxis, ax.yaxis, ax.zaxis):  # type: ignore[attr-defined]
-        axis.set_ticklabels([])
-        axis.set_tick_params(length=0)
-        axis.set_pane_color("#f6f7f9")
-        axis._axinfo["grid"].update(color="#e3e6ea", linewidth=0.6)
+    space: Any = ax  # Axes3D, which Matplotlib's types do not say
+    space.set_box_aspect(size, zoom=1.35)
+    space.view_init(*view)
+    ax.set_axis_off()
+
+
+def _whole(ax: Axes, data: DataSet, kept: SpaceCurve, shown: tuple[float, float]) -> None:
+    u = kept.parameters
+    points = kept.points.T
+    ax.plot(*points, linestyle="", marker="o", markersize=1.8, color=plot.DATA)
+    ax.plot(*_along(kept, u[0], u[-1]), color=plot.CURVE, linewidth=0.9)
+    if shown != (u[0], u[-1]):
+        ax.plot(*_along(kept, *shown), color=plot.CURVE, linewidth=2.6)
+        ax.set_title("The whole curve; bold: the stretch shown on the right")
+    else:
+        ax.set_title("The whole curve")
+    _scene(ax, kept.points, data.view)
+
+
+def _close_up(ax: Axes, cubic: SpaceCurve, kept: SpaceCurve, shown: tuple[float, float]) -> None:
+    """Draw the place where the two curves differ most, seen from where that is seen best."""
+    u = kept.parameters
+    t = np.linspace(*shown, 4000)
+    apart = cubic(t) - kept(t)
+    worst = int(np.linalg.norm(apart, axis=1).argmax())
+    middle = int(np.clip(np.searchsorted(u, t[worst]) - 1, 0, len(u) - 2))
+    first, last = max(middle - 1, 0), min(middle + 2, len(u) - 1)
+    across = np.cross(kept(t[worst], 1), apart[worst])
+    x, y, z = across / (np.linalg.norm(across) or 1.0)
+    view = (float(np.degrees(np.arcsin(np.clip(z, -1, 1)))), float(np.degrees(np.arctan2(y, x))))
+
+    near = kept.points[first : last + 1]
+    ax.plot(*near.T, color=plot.DATA, linewidth=0.8, marker="o", markersize=4)
+    bad, good = (_along(c, u[first], u[last]) for c in (cubic, kept))
+    ax.plot(*good, color=plot.CURVE, linewidth=1.8)
+    ax.plot(*bad, color=CUBIC, linewidth=1.4, linestyle="--")
+    ax.set_title("Close-up: where the two differ most")
+    _scene(ax, np.hstack([bad, good]).T, view)
 
 
 def _draw(data: DataSet, cubic: SpaceCurve, kept: SpaceCurve) -> Figure:
-    figure = Figure(figsize=(11, 5.6), layout="constrained")
-    figure.suptitle(
-        f"{data.name} — {data.source}", x=0.01, ha="left", fontsize=11, fontweight="bold"
-    )
-    areas = figure.add_gridspec(2, 2, width_ratios=[1, 1.25])
-    space = figure.add_subplot(areas[:, 0], projection="3d")
-    plot.curve(kept, ax=space, label="shape-preserving ν-spline")
-    plot.curve(cubic, ax=space, points=False, color=CUBIC, linestyle="--", label="C² cubic spline")
-    space.view_init(*data.view)
-    _equal_scales(space, data.points)
-    space.legend(loc="lower left", bbox_to_anchor=(0.0, -0.02))
+    figure = Figure(figsize=(11, 6), layout="constrained")
+    figure.suptitle(f"{data.name}: {data.source}", x=0.008, ha="left", fontsize=12)
+    areas = figure.add_gridspec(2, 2, width_ratios=[1, 1.5])
+    report = cubic.check()
+    u = kept.parameters
+    first, last = _window(report, len(u) - 1)
+    shown = (float(u[first]), float(u[last]))
+
+    _whole(figure.add_subplot(areas[0, 0], projection="3d"), data, kept, shown)
+    _close_up(figure.add_subplot(areas[1, 0], projection="3d"), cubic, kept, shown)
 
     over = figure.add_subplot(areas[0, 1])
-    plot.torsion(cubic, ax=over, color=CUBIC, linestyle="--", data=False)
-    plot.torsion(kept, ax=over)
-    over.set(title="Torsion: must have the sign of the data's", xlabel="")
-    over.legend(loc="best")
+    plot.torsion(cubic, ax=over, color=CUBIC, linestyle="--", data=False, label="C² cubic spline")
+    plot.torsion(kept, ax=over, label="shape-preserving ν-spline")
     below = figure.add_subplot(areas[1, 1], sharex=over)
     plot.curvature(cubic, ax=below, color=CUBIC, linestyle="--")
     plot.curvature(kept, ax=below)
-    below.set(title="Curvature")
+    wrong = sorted({v.segment for v in report.violations if first <= v.segment < last})
+    for ax in (over, below):
+        for k, segment in enumerate(wrong):
+            label = "the C² cubic violates a criterion" if k == 0 else None
+            ax.axvspan(*u[segment : segment + 2], color=CUBIC, alpha=0.1, lw=0, label=label)
+
+    # What decides is the sign of torsion: spikes may leave the picture.
+    inside = np.linspace(*shown, 4000)
+    data_torsion = np.abs(kept._discrete_torsion()[first:last])
+    top = 2.2 * float(np.nanmax(data_torsion))
+    over.set(title="Torsion must have the sign of the data's", xlabel="", ylim=(-top, top))
+    kappa = kept.curvature(inside)
+    below.set(title="Curvature", xlim=shown, ylim=(0, 1.4 * float(np.nanquantile(kappa, 0.97))))
+    handles, labels = over.get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside lower right", ncols=4)
     return figure
 
 

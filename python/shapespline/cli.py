@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
 
-class BadInput(Exception):
+class InputError(Exception):
     """What the user gave cannot be used; the message is one line."""
 
 
@@ -25,7 +25,7 @@ def _demo(options: argparse.Namespace) -> int:
     try:
         from shapespline import _demo
     except ModuleNotFoundError as error:
-        raise BadInput(
+        raise InputError(
             f"the demo draws with Matplotlib, but {error.name} is not installed; "
             'get it with: pip install "shapespline[plot]"'
         ) from None
@@ -34,7 +34,7 @@ def _demo(options: argparse.Namespace) -> int:
         out.mkdir(parents=True, exist_ok=True)
         return _demo.run(out)
     except OSError as error:
-        raise BadInput(f"cannot write to {error.filename or out}: {error.strerror}") from None
+        raise InputError(f"cannot write to {error.filename or out}: {error.strerror}") from None
 
 
 def _add_demo(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -67,7 +67,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     options = _parser().parse_args(arguments)
     try:
         status: int = options.run(options)
-    except BadInput as error:
+    except InputError as error:
         print(f"shapespline: {error}", file=sys.stderr)
         return 2
     except KeyboardInterrupt:

@@ -143,7 +143,7 @@ def curvature(
     kappa = c.curvature(u)
     ax.plot(u.ravel(), kappa.ravel(), color=color, linestyle=linestyle, linewidth=1.2, label=label)
     ax.set(xlabel="parameter u", ylabel="curvature κ", xlim=c.parameters[[0, -1]])
-    ax.set_ylim(bottom=0)
+    ax.set_ylim(bottom=0, auto=True)  # the next curve may need more room
     return ax
 
 
