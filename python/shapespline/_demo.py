@@ -171,54 +171,63 @@ def _window(report: ShapeReport, segments: int, length: int = 20) -> tuple[int, 
 
 
 def _along(c: SpaceCurve, first: float, last: float) -> Floats:
-    """Return a stretch of the curve as columns of coordinates."""
-    return c(np.linspace(first, last, 800)).T
+    """Return points along a stretch of the curve."""
+    return c(np.linspace(first, last, 2000))
 
 
-def _scene(ax: Axes, corners: Floats, view: tuple[float, float]) -> None:
-    """Show what lies between the corners with one scale for all axes, and nothing else."""
-    low, high = corners.min(axis=0), corners.max(axis=0)
-    middle, size = (low + high) / 2, np.maximum(high - low, 0.02 * (high - low).max())
-    limits = zip("xyz", middle - size / 2, middle + size / 2, strict=True)
-    ax.set(**{f"{axis}lim": (a, b) for axis, a, b in limits})
-    space: Any = ax  # Axes3D, which Matplotlib's types do not say
-    space.set_box_aspect(size, zoom=1.35)
-    space.view_init(*view)
+def _bare(ax: Axes, title: str, aspect: float = 1.0) -> None:
+    """Show shapes only: one scale, no axes."""
+    ax.set_title(title)
+    ax.set_aspect(aspect, adjustable="datalim")
+    ax.margins(0.06)
     ax.set_axis_off()
 
 
 def _whole(ax: Axes, data: DataSet, kept: SpaceCurve, shown: tuple[float, float]) -> None:
+    """Draw the curve in parallel projection, from the elevation and azimuth of its view."""
+    elevation, azimuth = np.radians(data.view)
+    right = np.array([-np.sin(azimuth), np.cos(azimuth), 0.0])
+    away = np.cos(elevation) * np.array([np.cos(azimuth), np.sin(azimuth), 0.0])
+    away[2] = np.sin(elevation)
+    plane = np.column_stack([right, np.cross(away, right)])
+    width, height = np.ptp(kept.points @ plane, axis=0)
+    if height > 1.5 * width:  # lay it down: the panel is wide
+        plane = plane[:, ::-1]
     u = kept.parameters
-    points = kept.points.T
-    ax.plot(*points, linestyle="", marker="o", markersize=1.8, color=plot.DATA)
-    ax.plot(*_along(kept, u[0], u[-1]), color=plot.CURVE, linewidth=0.9)
+    title = "The whole curve"
+    ax.plot(*(kept.points @ plane).T, linestyle="", marker="o", markersize=2, color=plot.DATA)
+    ax.plot(*(_along(kept, u[0], u[-1]) @ plane).T, color=plot.CURVE, linewidth=1)
     if shown != (u[0], u[-1]):
-        ax.plot(*_along(kept, *shown), color=plot.CURVE, linewidth=2.6)
-        ax.set_title("The whole curve; bold: the stretch shown on the right")
-    else:
-        ax.set_title("The whole curve")
-    _scene(ax, kept.points, data.view)
+        ax.plot(*(_along(kept, *shown) @ plane).T, color=plot.CURVE, linewidth=2.8)
+        title += " (bold: what the right shows)"
+    _bare(ax, title)
 
 
 def _close_up(ax: Axes, cubic: SpaceCurve, kept: SpaceCurve, shown: tuple[float, float]) -> None:
-    """Draw the place where the two curves differ most, seen from where that is seen best."""
+    """Draw the place where the two curves differ most, in the plane where it is seen best."""
     u = kept.parameters
     t = np.linspace(*shown, 4000)
     apart = cubic(t) - kept(t)
-    worst = int(np.linalg.norm(apart, axis=1).argmax())
+    distance = np.linalg.norm(apart, axis=1)
+    worst = int(distance.argmax())
     middle = int(np.clip(np.searchsorted(u, t[worst]) - 1, 0, len(u) - 2))
     first, last = max(middle - 1, 0), min(middle + 2, len(u) - 1)
-    across = np.cross(kept(t[worst], 1), apart[worst])
-    x, y, z = across / (np.linalg.norm(across) or 1.0)
-    view = (float(np.degrees(np.arcsin(np.clip(z, -1, 1)))), float(np.degrees(np.arctan2(y, x))))
 
     near = kept.points[first : last + 1]
-    ax.plot(*near.T, color=plot.DATA, linewidth=0.8, marker="o", markersize=4)
-    bad, good = (_along(c, u[first], u[last]) for c in (cubic, kept))
-    ax.plot(*good, color=plot.CURVE, linewidth=1.8)
-    ax.plot(*bad, color=CUBIC, linewidth=1.4, linestyle="--")
-    ax.set_title("Close-up: where the two differ most")
-    _scene(ax, np.hstack([bad, good]).T, view)
+    along = near[-1] - near[0]
+    along /= np.linalg.norm(along)
+    across = apart[worst] - (apart[worst] @ along) * along
+    across /= np.linalg.norm(across) or 1.0
+    plane = np.column_stack([along, across])
+    # A difference that the eye would miss is stretched, by a number that the title tells.
+    wanted = 0.25 * np.ptp(near @ along) / distance[worst]
+    stretch = max((k for k in (1, 2, 5, 10, 20, 50, 100) if k <= wanted), default=1)
+    ax.plot(*(near @ plane).T, color=plot.DATA, linewidth=0.8, marker="o", markersize=4)
+    ax.plot(*(_along(kept, u[first], u[last]) @ plane).T, color=plot.CURVE, linewidth=1.8)
+    bad = _along(cubic, u[first], u[last]) @ plane
+    ax.plot(*bad.T, color=CUBIC, linewidth=1.4, linestyle="--")
+    title = "Close-up: where the two differ most"
+    _bare(ax, title + (f" (height ×{stretch})" if stretch > 1 else ""), stretch)
 
 
 def _draw(data: DataSet, cubic: SpaceCurve, kept: SpaceCurve) -> Figure:
@@ -230,8 +239,8 @@ def _draw(data: DataSet, cubic: SpaceCurve, kept: SpaceCurve) -> Figure:
     first, last = _window(report, len(u) - 1)
     shown = (float(u[first]), float(u[last]))
 
-    _whole(figure.add_subplot(areas[0, 0], projection="3d"), data, kept, shown)
-    _close_up(figure.add_subplot(areas[1, 0], projection="3d"), cubic, kept, shown)
+    _whole(figure.add_subplot(areas[0, 0]), data, kept, shown)
+    _close_up(figure.add_subplot(areas[1, 0]), cubic, kept, shown)
 
     over = figure.add_subplot(areas[0, 1])
     plot.torsion(cubic, ax=over, color=CUBIC, linestyle="--", data=False, label="C² cubic spline")
