@@ -9,6 +9,7 @@ True
 (2, 3)
 """
 
+from shapespline import plot
 from shapespline._core import (
     Diagnostics,
     NuSpline,
@@ -31,4 +32,5 @@ __all__ = [
     "SpaceCurve",
     "Tangents",
     "__version__",
+    "plot",
 ]

@@ -8,8 +8,22 @@ from scipy.interpolate import (  # type: ignore[import-untyped, unused-ignore]
     BSpline,
     PPoly,
 )
+from typing_extensions import Self, disjoint_base
 
 __version__: str
+
+__all__ = [
+    "Diagnostics",
+    "NuSpline",
+    "SearchStep",
+    "ShapeRecord",
+    "ShapeReport",
+    "SpaceCurve",
+    "Tangents",
+    "__version__",
+    "_curve_from_bytes",
+    "_report_from_bytes",
+]
 
 _Floats = NDArray[np.float64]
 _Side = Literal["left", "right"]
@@ -42,8 +56,9 @@ class _Report(TypedDict):
     violations: list[_Record]
     undecided: list[_Record]
 
+@disjoint_base
 class SpaceCurve:
-    def __new__(cls) -> NoReturn: ...
+    def __new__(cls) -> Self: ...
     @property
     def points(self) -> _Floats: ...
     @property
@@ -87,6 +102,7 @@ class SpaceCurve:
         collinearity: float = 0.2,
         tolerance: float = 1e-9,
     ) -> ShapeReport: ...
+    def _discrete_torsion(self) -> _Floats: ...
     def __copy__(self) -> SpaceCurve: ...
     def __deepcopy__(self, _memo: object) -> SpaceCurve: ...
     def __reduce__(self) -> tuple[object, tuple[bytes]]: ...

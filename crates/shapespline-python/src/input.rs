@@ -8,7 +8,7 @@ use pyo3::{
     exceptions::{PyOverflowError, PyTypeError, PyValueError},
     intern,
     prelude::*,
-    types::{IntoPyDict, PyFloat, PyString},
+    types::{IntoPyDict, PyFloat, PyInt, PyString},
 };
 use shapespline::geometry::{DVec3, Dimension};
 
@@ -141,6 +141,9 @@ impl<'py> FromPyObject<'_, 'py> for Query<'py> {
     fn extract(object: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
         if let Ok(value) = object.cast::<PyFloat>() {
             return Ok(Self::One(value.value()));
+        }
+        if object.cast::<PyInt>().is_ok() {
+            return float("u", &object).map(Self::One);
         }
         let array = array("u", &object)?;
         Ok(if array.shape().is_empty() { Self::One(array.values()[0]) } else { Self::Many(array) })

@@ -1,8 +1,11 @@
 //! The Python face of shapespline: arrays in and out, options by name, errors to exceptions.
 //!
-//! No mathematics lives here. Every space curve is a [`curve::SpaceCurve`]; a family adds its own
-//! constructors ([`nu::NuSpline`]). The package `python/shapespline` around this module holds what
+//! No mathematics lives here. Every space curve is a `SpaceCurve`; a family adds its own
+//! constructors (`NuSpline`). The package `python/shapespline` around this module holds what
 //! is better written in Python: figures and the command line.
+
+// Doc comments on Python classes are numpydoc docstrings: `points[0]` in them is no link.
+#![allow(rustdoc::broken_intra_doc_links)]
 
 use pyo3::prelude::*;
 

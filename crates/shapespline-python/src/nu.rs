@@ -16,7 +16,7 @@ use crate::{
     input::{Numbers, Points, numbers},
     options::{self, CriteriaNames, Ends, Parameters, tolerances},
     report::ShapeReport,
-    work::{detached, interruptible},
+    work::interruptible,
 };
 
 /// `tension`: one number, or one a point.
@@ -110,11 +110,12 @@ impl NuSpline {
     ) -> PyResult<PyClassInitializer<Self>> {
         let Points { points, dimension } = points;
         let boundary = boundary.of(dimension)?;
-        let curve = detached(py, points.len(), || -> Result<_, FitError> {
+        // One pass after another along the points: nothing here runs on several threads.
+        let build = || -> Result<_, FitError> {
             let polygon = DataPolygon::with_dimension(points, dimension, &parameters.0, boundary)?;
             nu::NuSpline::new(polygon, tension.tension())
-        })
-        .map_err(fit_error)?;
+        };
+        let curve = py.detach(build).map_err(fit_error)?;
         let base = SpaceCurve::of(Arc::new(curve), None);
         Ok(PyClassInitializer::from(base).add_subclass(Self))
     }

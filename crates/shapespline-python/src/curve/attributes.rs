@@ -127,6 +127,14 @@ impl SpaceCurve {
         self.search.as_ref().map(|search| search.history.iter().map(SearchStep::from).collect())
     }
 
+    /// Discrete torsion of the data on each segment, in reciprocal units of the points, shape
+    /// (segments,); NaN where there is none. For figures.
+    fn _discrete_torsion<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let polygon = self.curve.polygon().map_err(input_error)?;
+        let torsion = (0..polygon.segments()).map(|i| polygon.discrete_torsion(i)).collect();
+        Ok(PyArray1::from_vec(py, torsion))
+    }
+
     /// Check whether the curve keeps the shape of its points.
     ///
     /// Parameters
