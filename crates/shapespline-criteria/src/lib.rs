@@ -16,7 +16,7 @@
 //! of spline curves*, Definitions 3.1, 6.1, 8.2, 9.2, 10.1 and section 13.
 //!
 //! [`Checker`] prepares what the polygon calls for; [`Checker::faults`] is the fast verdict on one
-//! segment; [`Checker::records`] measures margins; [`check`] makes the [`ShapeReport`].
+//! segment; [`Checker::record`] measures its margin; [`check`] makes the [`ShapeReport`].
 
 mod calls;
 mod checker;
