@@ -18,6 +18,7 @@ const BLOCK: usize = 4096;
 #[derive(Debug, Clone)]
 pub struct Checker<'a> {
     polygon: &'a DataPolygon,
+    criteria: Criteria,
     tolerances: Tolerances,
     calls: Vec<Calls>,
 }
@@ -28,13 +29,19 @@ impl<'a> Checker<'a> {
     pub fn new(polygon: &'a DataPolygon, criteria: Criteria, tolerances: Tolerances) -> Self {
         let mut calls = Calls::of_polygon(polygon, &tolerances);
         calls.iter_mut().for_each(|c| *c = c.only(criteria));
-        Self { polygon, tolerances, calls }
+        Self { polygon, criteria, tolerances, calls }
     }
 
     /// The polygon.
     #[must_use]
     pub fn polygon(&self) -> &'a DataPolygon {
         self.polygon
+    }
+
+    /// What counts as near, and as zero.
+    #[must_use]
+    pub fn tolerances(&self) -> Tolerances {
+        self.tolerances
     }
 
     /// What each segment calls for.
@@ -100,6 +107,7 @@ impl<'a> Checker<'a> {
             Criterion::Torsion => margin::torsion(&s, calls),
             Criterion::Coplanarity => margin::coplanarity(&s, calls, &self.cones(segment, &s)),
             Criterion::Collinearity => margin::collinearity(&s, calls, &self.cones(segment, &s)),
+            Criterion::GlobalConvexity => margin::global_convexity(&s),
         };
         record.satisfied = !self.faults(segment, legs).any(Faults::of(criterion));
         record.margin = margin.value;
@@ -121,19 +129,25 @@ impl<'a> Checker<'a> {
     where
         L: Fn(usize) -> [DVec3; 2],
     {
-        let mut report = ShapeReport::new(self.calls.len());
-        for calls in &self.calls {
-            for criterion in Criterion::ALL {
-                report.counts[criterion as usize].applicable +=
-                    usize::from(calls.any(Calls::of(criterion)));
-            }
-        }
+        let mut report = self.blank_report();
         for &(i, faults) in faults {
             for criterion in Criterion::ALL {
                 if faults.any(Faults::of(criterion)) {
                     report.counts[criterion as usize].violated += 1;
                     report.violations.push(self.record(i, legs(i), criterion));
                 }
+            }
+        }
+        report
+    }
+
+    /// The report that says how often each criterion applies, and nothing else yet.
+    pub(crate) fn blank_report(&self) -> ShapeReport {
+        let mut report = ShapeReport::new(self.calls.len(), self.criteria);
+        for calls in &self.calls {
+            for criterion in Criterion::ALL {
+                report.counts[criterion as usize].applicable +=
+                    usize::from(calls.any(Calls::of(criterion)));
             }
         }
         report
@@ -199,6 +213,7 @@ impl Faults {
                 .and(Self::LINE_AT_END)
                 .and(Self::LINE_BEFORE_END)
                 .and(Self::LINE_INSIDE_END),
+            Criterion::GlobalConvexity => Self::GLOBAL_CONVEXITY,
         }
     }
 }

@@ -23,6 +23,7 @@ mod checker;
 mod cone;
 mod criterion;
 mod faults;
+mod global;
 mod margin;
 mod report;
 
@@ -30,7 +31,7 @@ pub use calls::{Calls, separation};
 pub use checker::{Checker, check};
 pub use criterion::{Criteria, Criterion, Tolerances};
 pub use faults::Faults;
-pub use report::{Count, Record, ShapeReport};
+pub use report::{Count, Record, ShapeReport, Undecided};
 
 /// The examples of the README are run as tests.
 #[cfg(doctest)]
