@@ -61,7 +61,7 @@ impl<'a> Checker<'a> {
         let s = self.situation(segment, legs);
         let faults = sign_faults(&s, calls);
         if calls.any(Calls::of(Criterion::Coplanarity).and(Calls::of(Criterion::Collinearity))) {
-            return faults.and(cone_faults(&s, calls, &self.cones(segment, &s)));
+            return faults.and(cone_faults(&s, calls, &self.cones(segment)));
         }
         faults
     }
@@ -105,8 +105,8 @@ impl<'a> Checker<'a> {
             Criterion::Convexity => margin::convexity(&s),
             Criterion::Inflection => margin::inflection(&s),
             Criterion::Torsion => margin::torsion(&s, calls),
-            Criterion::Coplanarity => margin::coplanarity(&s, calls, &self.cones(segment, &s)),
-            Criterion::Collinearity => margin::collinearity(&s, calls, &self.cones(segment, &s)),
+            Criterion::Coplanarity => margin::coplanarity(&s, calls, &self.cones(segment)),
+            Criterion::Collinearity => margin::collinearity(&s, calls, &self.cones(segment)),
             Criterion::GlobalConvexity => margin::global_convexity(&s),
         };
         record.satisfied = !self.faults(segment, legs).any(Faults::of(criterion));
@@ -159,7 +159,7 @@ impl<'a> Checker<'a> {
         Situation::new(legs, self.polygon.chord(i), p, q)
     }
 
-    fn cones(&self, i: usize, s: &Situation) -> Cones {
+    pub(crate) fn cones(&self, i: usize) -> Cones {
         let calls = self.calls[i];
         let parts = if calls.any(Calls::SPLIT_COPLANARITY) {
             let flip = separation(self.polygon, i);
@@ -173,7 +173,7 @@ impl<'a> Checker<'a> {
             (before + after).normalize_or_zero()
         };
         Cones {
-            plane: (self.tolerances.coplanarity, plane_normal(s.p, s.q)),
+            plane: (self.tolerances.coplanarity, plane_normal(self.polygon.binormal(i), self.polygon.binormal(i + 1))),
             parts,
             line: (self.tolerances.collinearity, [line(i), line(i + 1)]),
         }
