@@ -144,6 +144,13 @@ pub(crate) struct Cones {
     pub(crate) line: (f64, [DVec3; 2]),
 }
 
+impl Cones {
+    /// For questions that ask of no cone.
+    pub(crate) fn none() -> Self {
+        Self { plane: (1.0, DVec3::ZERO), parts: [0.0, 1.0], line: (1.0, [DVec3::ZERO; 2]) }
+    }
+}
+
 /// Collinearity is asked on this part of a segment next to the node.
 pub(crate) const LINE_PART: f64 = 0.5;
 

@@ -32,7 +32,7 @@ pub(crate) struct Margin {
 }
 
 impl Margin {
-    fn least(self, other: Self) -> Self {
+    pub(crate) fn least(self, other: Self) -> Self {
         if other.value < self.value { other } else { self }
     }
 }
