@@ -6,13 +6,14 @@ use shapespline_geometry::bernstein::quadratic_is_positive;
 use crate::{
     Calls,
     cone::{Quadratic, end_is_inside, inside, part},
+    global::is_globally_convex,
 };
 
 /// The conditions that fail on a segment `m`, as the failure sets (5.40)–(5.57) of paper 001
 /// (corrected by E3) and Theorems 13.6–13.11 of paper 002 distinguish them: the place of a failure
 /// decides which tensions can mend it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
-pub struct Faults(u16);
+pub struct Faults(u32);
 
 impl Faults {
     /// Convexity, at node m: `ω(u_m)·P_n ≤ 0` (K₀₁).
@@ -47,6 +48,8 @@ impl Faults {
     pub const LINE_BEFORE_END: Self = Self(16384);
     /// Collinearity at node m+1, inside its interval (J₁₂).
     pub const LINE_INSIDE_END: Self = Self(32768);
+    /// Global convexity, anywhere on the segment.
+    pub const GLOBAL_CONVEXITY: Self = Self(65536);
 
     /// Whether nothing fails.
     #[inline]
@@ -142,6 +145,13 @@ pub(crate) struct Cones {
     pub(crate) line: (f64, [DVec3; 2]),
 }
 
+impl Cones {
+    /// For questions that ask of no cone.
+    pub(crate) fn none() -> Self {
+        Self { plane: (1.0, [DVec3::ZERO; 2]), parts: [0.0, 1.0], line: (1.0, [DVec3::ZERO; 2]) }
+    }
+}
+
 /// Collinearity is asked on this part of a segment next to the node.
 pub(crate) const LINE_PART: f64 = 0.5;
 
@@ -158,10 +168,13 @@ pub(crate) fn sign_faults(s: &Situation, calls: Calls) -> Faults {
             faults.add(Faults::CONVEXITY_AT_END, !end);
             let between = quadratic_is_positive(a0, g0, b0) && quadratic_is_positive(a1, g1, b1);
             faults.add(Faults::CONVEXITY_BETWEEN, start && end && !between);
-        } else {
+        } else if calls.any(Calls::INFLECTION) {
             faults.add(Faults::INFLECTION_AT_START, !(a0 > 0.0 && a1 < 0.0));
             faults.add(Faults::INFLECTION_AT_END, !(b0 < 0.0 && b1 > 0.0));
         }
+    }
+    if calls.any(Calls::GLOBAL_CONVEXITY) {
+        faults.add(Faults::GLOBAL_CONVEXITY, !is_globally_convex(s));
     }
     if calls.any(Calls::RIGHT_TORSION) {
         faults.add(Faults::TORSION, !(s.determinant() > 0.0));

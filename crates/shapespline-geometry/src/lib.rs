@@ -16,12 +16,15 @@
 mod arc_length;
 pub mod bernstein;
 mod boundary;
+mod bspline;
 mod error;
 mod frame;
 mod locate;
 mod parametrization;
 mod piecewise;
+mod piecewise_bezier;
 mod polygon;
+pub mod polynomial;
 mod segment;
 mod vector;
 
@@ -29,10 +32,11 @@ pub use arc_length::ArcLength;
 pub use boundary::Boundary;
 pub use error::InputError;
 pub use frame::Frame;
-pub use glam::DVec3;
+pub use glam::{DVec3, DVec4};
 pub use locate::{Locator, Side};
 pub use parametrization::Parametrization;
 pub use piecewise::{Domain, PiecewiseCubic};
+pub use piecewise_bezier::{BezierPart, PiecewiseBezier};
 pub use polygon::{DataPolygon, Dimension};
 pub use segment::CubicSegment;
 pub use vector::{length, normalize};
