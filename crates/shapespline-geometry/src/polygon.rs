@@ -287,10 +287,10 @@ fn check_chords(points: &[DVec3]) -> Result<(), InputError> {
 /// A chord over its spacing is the size of a tangent: if that overflows, so would every answer.
 fn check_velocities(points: &[DVec3], parameters: &[f64]) -> Result<(), InputError> {
     for (i, (p, u)) in points.windows(2).zip(parameters.windows(2)).enumerate() {
-        let velocity = (p[1] - p[0]) / (u[1] - u[0]) * 6.0;
-        if !velocity.is_finite() {
+        let speed = (p[1] - p[0]).abs().max_element() * 6.0 / (u[1] - u[0]);
+        if !speed.is_finite() {
             let what = "chord over parameter spacing";
-            return Err(InputError::Overflow { index: i, what, value: f64::INFINITY });
+            return Err(InputError::Overflow { index: i, what, value: speed });
         }
     }
     Ok(())

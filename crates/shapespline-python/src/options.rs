@@ -192,7 +192,7 @@ impl CriteriaNames {
         Criterion::from_name(name).ok_or_else(|| {
             let names: Vec<String> =
                 Criterion::ALL.iter().map(|c| format!("'{}'", c.name())).collect();
-            let names = names.join(", ") + " ('global-convexity' is still to come)";
+            let names = names.join(", ");
             unknown("criteria", name, &names)
         })
     }
