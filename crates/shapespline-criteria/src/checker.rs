@@ -173,7 +173,10 @@ impl<'a> Checker<'a> {
             (before + after).normalize_or_zero()
         };
         Cones {
-            plane: (self.tolerances.coplanarity, plane_normal(self.polygon.binormal(i), self.polygon.binormal(i + 1))),
+            plane: (
+                self.tolerances.coplanarity,
+                plane_normal(self.polygon.binormal(i), self.polygon.binormal(i + 1)),
+            ),
             parts,
             line: (self.tolerances.collinearity, [line(i), line(i + 1)]),
         }

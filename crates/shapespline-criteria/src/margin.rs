@@ -84,9 +84,8 @@ pub(crate) fn inflection(s: &Situation) -> Margin {
     let [first, _, last] = s.omega;
     let [start, _, end] = sizes(s);
     let along = |w: DVec3, n: DVec3, size: f64| ratio(w.dot(n.normalize_or_zero()), size);
-    Margin { value: along(first, s.p, start).min(-along(first, s.q, start)), at: 0.0 }.least(
-        Margin { value: (-along(last, s.p, end)).min(along(last, s.q, end)), at: 1.0 },
-    )
+    Margin { value: along(first, s.p, start).min(-along(first, s.q, start)), at: 0.0 }
+        .least(Margin { value: (-along(last, s.p, end)).min(along(last, s.q, end)), at: 1.0 })
 }
 
 pub(crate) fn torsion(s: &Situation, calls: Calls) -> Margin {

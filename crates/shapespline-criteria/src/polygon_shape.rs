@@ -83,17 +83,16 @@ fn extent(polygon: &DataPolygon, zero: f64) -> Extent {
     let from = |i: usize| points[i] - points[0];
     let size = |v: DVec3| length(v);
     // The farthest point spans the line, the one farthest from the line the plane.
-    let far = (0..points.len()).map(from).fold(DVec3::ZERO, |m, v| {
-        if size(v) > size(m) { v } else { m }
-    });
+    let far =
+        (0..points.len()).map(from).fold(DVec3::ZERO, |m, v| if size(v) > size(m) { v } else { m });
     let (scale, axis) = (size(far), shapespline_geometry::normalize(far));
     if scale == 0.0 {
         return Extent::Line;
     }
     let across = |i: usize| (from(i) / scale).cross(axis);
-    let side = (0..points.len()).map(across).fold(DVec3::ZERO, |m, v| {
-        if v.length() > m.length() { v } else { m }
-    });
+    let side = (0..points.len())
+        .map(across)
+        .fold(DVec3::ZERO, |m, v| if v.length() > m.length() { v } else { m });
     if side.length() <= zero {
         return Extent::Line;
     }

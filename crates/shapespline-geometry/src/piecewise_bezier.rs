@@ -93,9 +93,8 @@ impl PiecewiseBezier {
             }
             control.extend((0..=degree).map(|j| {
                 // The constant last: it may be far larger than the rest.
-                let rest = (1..=j).fold(DVec3::ZERO, |sum, k| {
-                    sum + scaled[k] * (rows[j][k] / rows[degree][k])
-                });
+                let rest = (1..=j)
+                    .fold(DVec3::ZERO, |sum, k| sum + scaled[k] * (rows[j][k] / rows[degree][k]));
                 (scaled[0] + rest).extend(1.0)
             }));
         }
@@ -212,11 +211,8 @@ impl PiecewiseBezier {
             if start >= to - snap {
                 break;
             }
-            let mut control: Vec<DVec4> = self
-                .piece(i)
-                .iter()
-                .map(|p| (p.truncate() - origin * p.w).extend(p.w))
-                .collect();
+            let mut control: Vec<DVec4> =
+                self.piece(i).iter().map(|p| (p.truncate() - origin * p.w).extend(p.w)).collect();
             let (begins, ends) = (start < from - snap, end > to + snap);
             // The later cut first: its parameter is that of the whole piece.
             if ends {

@@ -222,9 +222,7 @@ impl<'a> CurveChecker<'a> {
         let polygon = self.checker.polygon();
         let normals = [segment, segment + 1].map(|i| polygon.binormal(i).normalize_or_zero());
         let cones = self.checker.cones(segment);
-        calls
-            .any(Calls::of(criterion))
-            .then_some(Question { criterion, calls, normals, cones })
+        calls.any(Calls::of(criterion)).then_some(Question { criterion, calls, normals, cones })
     }
 
     fn parameter(&self, segment: usize, local: f64) -> f64 {
@@ -301,10 +299,9 @@ fn is_aligned(u: &[f64], breaks: &[f64]) -> Result<bool, CurveError> {
     let n = u.len() - 1;
     let close = |a: f64, b: f64, h: f64| (a - b).abs() <= 1e-12 * h;
     let (h0, hn) = (u[1] - u[0], u[n] - u[n - 1]);
-    for (index, reaches) in [
-        (0, u[0] >= start || close(u[0], start, h0)),
-        (n, u[n] <= end || close(u[n], end, hn)),
-    ] {
+    for (index, reaches) in
+        [(0, u[0] >= start || close(u[0], start, h0)), (n, u[n] <= end || close(u[n], end, hn))]
+    {
         if !reaches {
             return Err(CurveError::Domain { index, value: u[index], start, end });
         }

@@ -39,8 +39,7 @@ impl Segment {
             Piece {
                 local: part.local,
                 a: derivatives(Polynomial::new(points, error)),
-                w: rational
-                    .then(|| derivatives(Polynomial::new(weights(), 4.0 * f64::EPSILON))),
+                w: rational.then(|| derivatives(Polynomial::new(weights(), 4.0 * f64::EPSILON))),
             }
         };
         Self { pieces: parts.iter().map(piece).collect() }
@@ -68,7 +67,8 @@ impl Segment {
         let cut = |piece: &Piece| {
             let [start, end] = piece.local;
             let (lo, hi) = (from.max(start), to.min(end));
-            (hi > lo).then(|| piece.part((lo - start) / (end - start), (hi - start) / (end - start)))
+            (hi > lo)
+                .then(|| piece.part((lo - start) / (end - start), (hi - start) / (end - start)))
         };
         Self { pieces: self.pieces.iter().filter_map(cut).collect() }
     }

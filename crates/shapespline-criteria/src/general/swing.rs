@@ -93,8 +93,7 @@ impl Arc {
 
     fn halves(&self) -> [Self; 2] {
         let middle = 0.5 * (self.from + self.to);
-        let ([x0, x1], [y0, y1], [t0, t1]) =
-            (self.x.halves(), self.y.halves(), self.turn.halves());
+        let ([x0, x1], [y0, y1], [t0, t1]) = (self.x.halves(), self.y.halves(), self.turn.halves());
         [
             Self { x: x0, y: y0, turn: t0, from: self.from, to: middle },
             Self { x: x1, y: y1, turn: t1, from: middle, to: self.to },
