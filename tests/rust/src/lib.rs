@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "test code")]
 
 pub mod generate;
+pub mod segments;
 
 use std::path::Path;
 
