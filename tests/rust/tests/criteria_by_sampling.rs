@@ -32,7 +32,7 @@ fn sampled(polygon: &DataPolygon, curve: &Samples, criterion: Criterion) -> f64 
     let least = |f: &dyn Fn(&[DVec3; 4]) -> f64| {
         curve.iter().map(|(_, d)| f(d)).fold(f64::INFINITY, f64::min)
     };
-    let size = -least(&|d| -omega(d).length());
+    let size = (-least(&|d| -omega(d).length_squared())).sqrt();
     let parts = |axis: DVec3, from: f64, to: f64, vector: &dyn Fn(&[DVec3; 4]) -> DVec3| {
         let mut side = 0.0;
         let mut margin = f64::INFINITY;
@@ -119,7 +119,9 @@ fn parameters(around: Option<f64>) -> Vec<f64> {
         (0..=SAMPLES).map(move |k| t + (2.0 * k as f64 / SAMPLES as f64 - 1.0) / SAMPLES as f64)
     });
     let mut t: Vec<f64> = all.chain(near).filter(|t| (0.0..=1.0).contains(t)).collect();
-    t.sort_by(f64::total_cmp);
+    if around.is_some() {
+        t.sort_by(f64::total_cmp);
+    }
     t
 }
 
