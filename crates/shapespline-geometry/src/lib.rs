@@ -16,24 +16,32 @@
 mod arc_length;
 pub mod bernstein;
 mod boundary;
+mod curve;
 mod error;
 mod frame;
 mod locate;
+mod monotone;
 mod parametrization;
 mod piecewise;
 mod polygon;
+mod ragged;
+mod reparametrized;
 mod segment;
 mod vector;
 
 pub use arc_length::ArcLength;
 pub use boundary::Boundary;
+pub use curve::Curve;
 pub use error::InputError;
 pub use frame::{Frame, curvature, curvature_vector, frame, torsion};
 pub use glam::DVec3;
 pub use locate::{Locator, Side};
+pub use monotone::MonotoneCubic;
 pub use parametrization::Parametrization;
 pub use piecewise::{Domain, PiecewiseCubic};
 pub use polygon::{DataPolygon, Dimension};
+pub use ragged::Ragged;
+pub use reparametrized::ReparametrizedCubic;
 pub use segment::CubicSegment;
 pub use vector::{length, normalize};
 

@@ -6,7 +6,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use crate::{
-    CubicSegment, Dimension, InputError, Locator, Side, locate::search,
+    CubicSegment, Curve, Dimension, InputError, Locator, Side, locate::search,
     parametrization::check_increasing,
 };
 
@@ -151,14 +151,19 @@ impl PiecewiseCubic {
     /// open curve `t` leaves `[0, 1]`; on a closed one the parameter wraps. Cost O(log N).
     #[must_use]
     pub fn locate(&self, u: f64, side: Side) -> (usize, f64) {
+        let (i, u) = self.find(u, side);
+        (i, self.local(i, u))
+    }
+
+    /// Segment of a parameter, and the parameter wrapped into it. Cost O(log N).
+    pub(crate) fn find(&self, u: f64, side: Side) -> (usize, f64) {
         let u = self.wrap(u);
-        let mut i = search(&self.knots, u, side);
         // On a closed curve the segment that ends at the first knot is the last one.
         if self.domain == Domain::Closed && side == Side::Left && u == self.knots[0] {
-            i = self.segments() - 1;
-            return (i, 1.0);
+            let last = self.segments();
+            return (last - 1, self.knots[last]);
         }
-        (i, self.local(i, u))
+        (search(&self.knots, u, side), u)
     }
 
     /// First, second and third derivatives with respect to `u`.
@@ -198,32 +203,43 @@ impl PiecewiseCubic {
         side: Side,
         out: &mut [f64],
     ) -> Result<(), InputError> {
+        match order {
+            0 => self.fill_with(u, side, out, |i, u| self.derivative::<0>(i, self.local(i, u))),
+            1 => self.fill_with(u, side, out, |i, u| self.derivative::<1>(i, self.local(i, u))),
+            2 => self.fill_with(u, side, out, |i, u| self.derivative::<2>(i, self.local(i, u))),
+            3 => self.fill_with(u, side, out, |i, u| self.derivative::<3>(i, self.local(i, u))),
+            _ => self.fill_with(u, side, out, |i, u| self.derivative::<4>(i, self.local(i, u))),
+        }
+    }
+
+    /// Finds the segment of every parameter and writes what `value` makes of segment and (wrapped)
+    /// parameter, row by row: the one way to many values, whatever the parameter means.
+    pub(crate) fn fill_with(
+        &self,
+        u: &[f64],
+        side: Side,
+        out: &mut [f64],
+        value: impl Fn(usize, f64) -> DVec3 + Sync,
+    ) -> Result<(), InputError> {
         let columns = self.dimension.len();
         if out.len() != u.len() * columns {
             let (expected, found) = (u.len() * columns, out.len());
             let per = "one for each parameter and coordinate";
             return Err(InputError::Length { argument: "out", expected, found, per });
         }
-        match (order, columns) {
-            (0, 2) => self.fill::<0, 2>(u, side, out),
-            (1, 2) => self.fill::<1, 2>(u, side, out),
-            (2, 2) => self.fill::<2, 2>(u, side, out),
-            (3, 2) => self.fill::<3, 2>(u, side, out),
-            (_, 2) => self.fill::<4, 2>(u, side, out),
-            (0, _) => self.fill::<0, 3>(u, side, out),
-            (1, _) => self.fill::<1, 3>(u, side, out),
-            (2, _) => self.fill::<2, 3>(u, side, out),
-            (3, _) => self.fill::<3, 3>(u, side, out),
-            (_, _) => self.fill::<4, 3>(u, side, out),
+        match self.dimension {
+            Dimension::Two => self.fill::<2>(u, side, out, value),
+            Dimension::Three => self.fill::<3>(u, side, out, value),
         }
         Ok(())
     }
 
-    fn fill<const ORDER: usize, const COLUMNS: usize>(
+    fn fill<const COLUMNS: usize>(
         &self,
         u: &[f64],
         side: Side,
         out: &mut [f64],
+        value: impl Fn(usize, f64) -> DVec3 + Sync,
     ) {
         // A table costs about as much to make as it saves on one query a segment.
         let table = if u.len() >= self.segments().max(64) { self.table() } else { None };
@@ -241,15 +257,14 @@ impl PiecewiseCubic {
                     hint = *segment;
                 }
                 for ((&u, &i), row) in u.iter().zip(&segments).zip(out.chunks_exact_mut(COLUMNS)) {
-                    let value = self.derivative::<ORDER>(i, self.local(i, self.wrap(u)));
-                    row.copy_from_slice(&value.to_array()[..COLUMNS]);
+                    row.copy_from_slice(&value(i, self.wrap(u)).to_array()[..COLUMNS]);
                 }
             }
         };
         let left = |u: &[f64], out: &mut [f64]| {
             for (&u, row) in u.iter().zip(out.chunks_exact_mut(COLUMNS)) {
-                let (i, t) = self.locate(u, Side::Left);
-                row.copy_from_slice(&self.derivative::<ORDER>(i, t).to_array()[..COLUMNS]);
+                let (i, u) = self.find(u, Side::Left);
+                row.copy_from_slice(&value(i, u).to_array()[..COLUMNS]);
             }
         };
         let one = |u: &[f64], out: &mut [f64]| match side {
@@ -301,8 +316,13 @@ impl PiecewiseCubic {
     /// Derivative with respect to `u` of a segment at local `t`, as weights of end points and legs.
     #[inline]
     fn derivative<const ORDER: usize>(&self, i: usize, t: f64) -> DVec3 {
+        self.derivative_at::<ORDER>(i, 1.0 - t, t)
+    }
+
+    /// The same at `[1 − t, t]`, for callers who know `1 − t` better than the difference does.
+    #[inline]
+    pub(crate) fn derivative_at<const ORDER: usize>(&self, i: usize, s: f64, t: f64) -> DVec3 {
         let (p, q, [a, c]) = (self.points[i], self.points[i + 1], self.legs[i]);
-        let s = 1.0 - t;
         if ORDER == 0 {
             // Exact at both ends, and the same run through backwards.
             let (ss, tt) = (s * s, t * t);
@@ -321,6 +341,34 @@ impl PiecewiseCubic {
             }
             _ => DVec3::splat(0.0 * t.clamp(-1.0, 1.0)),
         }
+    }
+}
+
+impl Curve for PiecewiseCubic {
+    fn cubic(&self) -> &PiecewiseCubic {
+        self
+    }
+
+    fn locate(&self, u: f64, side: Side) -> (usize, f64) {
+        self.locate(u, side)
+    }
+
+    fn parameter(&self, segment: usize, t: f64) -> f64 {
+        self.knots[segment] + t * (self.knots[segment + 1] - self.knots[segment])
+    }
+
+    fn evaluate(&self, u: f64, order: usize, side: Side) -> DVec3 {
+        self.evaluate(u, order, side)
+    }
+
+    fn evaluate_many(
+        &self,
+        u: &[f64],
+        order: usize,
+        side: Side,
+        out: &mut [f64],
+    ) -> Result<(), InputError> {
+        self.evaluate_many(u, order, side, out)
     }
 }
 
