@@ -6,7 +6,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use crate::{
-    CubicSegment, Curve, Dimension, InputError, Locator, Side, locate::search,
+    CubicSegment, Curve, DataPolygon, Dimension, InputError, Locator, Side, locate::search,
     parametrization::check_increasing,
 };
 
@@ -102,6 +102,17 @@ impl PiecewiseCubic {
             return Err(InputError::NotFinite { argument: "legs", index, value });
         }
         Ok(Self { knots, points, legs, dimension, domain, locator: OnceLock::new() })
+    }
+
+    /// Curve through the points of a polygon, with the end legs of each segment.
+    ///
+    /// # Errors
+    /// Not one pair of legs a segment; legs that are not finite.
+    pub fn through(polygon: DataPolygon, legs: Vec<[DVec3; 2]>) -> Result<Self, InputError> {
+        let domain = if polygon.is_closed() { Domain::Closed } else { Domain::Open };
+        let dimension = polygon.dimension();
+        let (points, knots) = polygon.into_points_and_parameters();
+        Self::new(knots, points, legs, dimension, domain)
     }
 
     /// The knots `u_0 < … < u_N`.

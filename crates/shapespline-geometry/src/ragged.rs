@@ -76,9 +76,8 @@ impl<'a, T: Sync> Ragged<'a, T> {
         // Rows differ in length and in work, so rayon splits them as it goes.
         let run = || (0..self.len()).into_par_iter().map(|k| work(k, self.row(k))).collect();
         let Some(count) = threads else { return Ok(run()) };
-        let refused = |allowed| {
-            Err(InputError::Scalar { argument: "threads", value: count as f64, allowed })
-        };
+        let refused =
+            |allowed| Err(InputError::Scalar { argument: "threads", value: count as f64, allowed });
         if count == 0 {
             return refused("at least 1");
         }
