@@ -18,7 +18,7 @@ pub struct MonotoneCubic {
 
 /// A Newton step of this part of `t` is the last: convergence is quadratic, so what remains is below
 /// its square.
-const LAST_STEP: f64 = 1e-9;
+const LAST_STEP: f64 = 2e-8;
 
 impl MonotoneCubic {
     /// First, second and third derivatives at `[1 − t, t]`.
@@ -47,48 +47,112 @@ impl MonotoneCubic {
     ///
     /// Exact at 0 and 1. Outside `[0, 1]` the map goes on as its end tangents. The half of the
     /// interval that holds the root is turned so that it begins at 0; there a quadratic guess is
-    /// within a few per cent, two steps of Halley's and one of Newton's iteration follow, and if the
-    /// last of them was not small, Newton's iteration inside a shrinking bracket ends it.
+    /// within 2 %, one step of fourth order leaves 1.3e−8 and one of Newton's iteration rounding
+    /// (measured over all `λ`). If that last step was not small, Newton's iteration inside a shrinking
+    /// bracket goes on.
     #[inline]
     #[must_use]
     pub fn solve(self, [x, y]: [f64; 2]) -> [f64; 2] {
         let Self { start, end } = self;
-        // The value at t = ½.
-        let middle = 0.5 + 0.125 * (start - end);
-        if x <= middle {
-            let t = if x < 0.0 { x / start } else { near_zero(start, end, x, middle) };
-            [1.0 - t, t]
-        } else {
-            let s = if y < 0.0 { y / end } else { near_zero(end, start, y, 1.0 - middle) };
-            [s, 1.0 - s]
+        let mut out = [[0.0; 2]; 1];
+        let mut one = Batch::<1>::default();
+        one.put(0, self, [x, y]);
+        one.solve(&mut out);
+        out[0]
+    }
+}
+
+/// Values to be solved for together: without branches, so that the processor can do several at once.
+pub(crate) struct Batch<const N: usize> {
+    /// Slopes at the end that the root is nearer to, and at the other one.
+    near: [f64; N],
+    far: [f64; N],
+    /// Value counted from the nearer end.
+    value: [f64; N],
+    /// Whether the nearer end is the first.
+    first: [bool; N],
+    count: usize,
+}
+
+impl<const N: usize> Default for Batch<N> {
+    fn default() -> Self {
+        let (ones, zeros) = ([1.0; N], [0.0; N]);
+        Self { near: ones, far: ones, value: zeros, first: [true; N], count: 0 }
+    }
+}
+
+impl<const N: usize> Batch<N> {
+    /// Puts a map and `[x, 1 − x]` in place `j`.
+    #[inline]
+    pub(crate) fn put(&mut self, j: usize, map: MonotoneCubic, [x, y]: [f64; 2]) {
+        // The map has the value ½ + (λ⁰ − λ¹)/8 at ½. Chosen, not branched on: which half it is
+        // cannot be foreseen.
+        let first = x <= 0.5 + 0.125 * (map.start - map.end);
+        let select = |a: f64, b: f64| if first { a } else { b };
+        self.near[j] = select(map.start, map.end);
+        self.far[j] = select(map.end, map.start);
+        self.value[j] = select(x, y);
+        self.first[j] = first;
+        self.count = j + 1;
+    }
+
+    /// `[1 − t, t]` of each.
+    #[inline]
+    pub(crate) fn solve(&self, out: &mut [[f64; 2]; N]) {
+        let (mut root, mut step) = ([0.0; N], [0.0; N]);
+        for j in 0..N {
+            (root[j], step[j]) = near_zero(self.near[j], self.far[j], self.value[j]);
+        }
+        for j in 0..self.count {
+            let (near, value, mut t) = (self.near[j], self.value[j], root[j]);
+            // Beyond the end; or the last step was not small (or a NaN).
+            if value < 0.0 {
+                t = value / near;
+            } else if !(step[j].abs() <= LAST_STEP * t) {
+                t = bracketed(near, self.far[j], value, t);
+            }
+            let rest = 1.0 - t;
+            out[j] = if self.first[j] { [rest, t] } else { [t, rest] };
         }
     }
 }
 
-/// The root `t ∈ [0, ½]` of `λt + kt² + ct³ = x`, for `0 ≤ x ≤ middle`, the value at ½.
+/// The root `t ∈ [0, ½]` of `λt + kt² + ct³ = x` for `x` between 0 and the value at ½, and the last
+/// step towards it.
 #[inline]
-fn near_zero(lambda: f64, far: f64, x: f64, middle: f64) -> f64 {
-    let k = 3.0 - 2.0 * lambda - far;
-    let c = lambda + far - 2.0;
-    // The cubic term as a quadratic one, with a rough t from the chord to ½.
-    let rough = k + c * (0.5 * x / middle);
-    let mut t = 2.0 * x / (lambda + (lambda * lambda + 4.0 * rough * x).sqrt());
-    for _ in 0..2 {
+fn near_zero(lambda: f64, far: f64, x: f64) -> (f64, f64) {
+    let (k, c) = coefficients(lambda, far);
+    // The cubic term as a quadratic one, with a rough t: `part` is x over the value at ½ (its
+    // reciprocal as a series), and the factors are fitted.
+    let bend = 0.25 * (lambda - far);
+    let part = 2.0 * x * (1.0 - bend + bend * bend);
+    let rough = k + c * (0.5 * part) * (1.0 + (1.0 - part) * (0.8 - 0.2 * lambda));
+    let guess = 2.0 * x / (lambda + (lambda * lambda + 4.0 * rough * x).sqrt());
+    let at = |t: f64| {
         let value = t * (lambda + t * (k + c * t)) - x;
-        let slope = lambda + t * (2.0 * k + 3.0 * c * t);
-        let half_bend = k + 3.0 * c * t;
-        t -= value * slope / (slope * slope - value * half_bend);
-    }
-    let value = t * (lambda + t * (k + c * t)) - x;
-    let slope = lambda + t * (2.0 * k + 3.0 * c * t);
+        (value, lambda + t * (2.0 * k + 3.0 * c * t))
+    };
+    // Householder's step of third order.
+    let (value, slope) = at(guess);
+    let product = value * (k + 3.0 * c * guess);
+    let square = slope * slope;
+    let t =
+        guess - value * (square - product) / (slope * (square - 2.0 * product) + value * value * c);
+    let (value, slope) = at(t);
     let step = value / slope;
-    let next = t - step;
-    if step.abs() <= LAST_STEP * t { next } else { bracketed(lambda, k, c, x, next) }
+    (t - step, step)
+}
+
+/// `k` and `c` of `λt + kt² + ct³`.
+#[inline]
+fn coefficients(lambda: f64, far: f64) -> (f64, f64) {
+    (3.0 - 2.0 * lambda - far, lambda + far - 2.0)
 }
 
 /// Newton's iteration that never leaves a bracket of the root, halving where it would.
 #[cold]
-fn bracketed(lambda: f64, k: f64, c: f64, x: f64, guess: f64) -> f64 {
+fn bracketed(lambda: f64, far: f64, x: f64, guess: f64) -> f64 {
+    let (k, c) = coefficients(lambda, far);
     // The root of zero is zero; a NaN stays one.
     if !(x > 0.0) {
         return x;

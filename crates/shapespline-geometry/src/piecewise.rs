@@ -65,6 +65,9 @@ const BLOCK: usize = 16_384;
 /// Queries whose segments are found before any of them is evaluated.
 const STRIDE: usize = 64;
 
+/// `[1 − t, t]` of that many.
+pub(crate) type Locals = [[f64; 2]; STRIDE];
+
 impl PiecewiseCubic {
     /// Curve from knots, points and the end legs of each segment.
     ///
@@ -214,23 +217,31 @@ impl PiecewiseCubic {
         side: Side,
         out: &mut [f64],
     ) -> Result<(), InputError> {
+        let local = |segments: &[usize], u: &[f64], local: &mut Locals| {
+            for ((&i, &u), local) in segments.iter().zip(u).zip(local) {
+                let t = self.local(i, u);
+                *local = [1.0 - t, t];
+            }
+        };
         match order {
-            0 => self.fill_with(u, side, out, |i, u| self.derivative::<0>(i, self.local(i, u))),
-            1 => self.fill_with(u, side, out, |i, u| self.derivative::<1>(i, self.local(i, u))),
-            2 => self.fill_with(u, side, out, |i, u| self.derivative::<2>(i, self.local(i, u))),
-            3 => self.fill_with(u, side, out, |i, u| self.derivative::<3>(i, self.local(i, u))),
-            _ => self.fill_with(u, side, out, |i, u| self.derivative::<4>(i, self.local(i, u))),
+            0 => self.fill_with(u, side, out, local, |i, l| self.derivative_at::<0>(i, l)),
+            1 => self.fill_with(u, side, out, local, |i, l| self.derivative_at::<1>(i, l)),
+            2 => self.fill_with(u, side, out, local, |i, l| self.derivative_at::<2>(i, l)),
+            3 => self.fill_with(u, side, out, local, |i, l| self.derivative_at::<3>(i, l)),
+            _ => self.fill_with(u, side, out, local, |i, l| self.derivative_at::<4>(i, l)),
         }
     }
 
-    /// Finds the segment of every parameter and writes what `value` makes of segment and (wrapped)
-    /// parameter, row by row: the one way to many values, whatever the parameter means.
+    /// Finds the segment of every parameter, has `local` make `[1 − t, t]` of segments and (wrapped)
+    /// parameters, some at a time, and writes what `value` makes of segment and `[1 − t, t]`, row by
+    /// row: the one way to many values, whatever the parameter means.
     pub(crate) fn fill_with(
         &self,
         u: &[f64],
         side: Side,
         out: &mut [f64],
-        value: impl Fn(usize, f64) -> DVec3 + Sync,
+        local: impl Fn(&[usize], &[f64], &mut Locals) + Sync,
+        value: impl Fn(usize, [f64; 2]) -> DVec3 + Sync,
     ) -> Result<(), InputError> {
         let columns = self.dimension.len();
         if out.len() != u.len() * columns {
@@ -239,8 +250,8 @@ impl PiecewiseCubic {
             return Err(InputError::Length { argument: "out", expected, found, per });
         }
         match self.dimension {
-            Dimension::Two => self.fill::<2>(u, side, out, value),
-            Dimension::Three => self.fill::<3>(u, side, out, value),
+            Dimension::Two => self.fill::<2>(u, side, out, local, value),
+            Dimension::Three => self.fill::<3>(u, side, out, local, value),
         }
         Ok(())
     }
@@ -250,32 +261,40 @@ impl PiecewiseCubic {
         u: &[f64],
         side: Side,
         out: &mut [f64],
-        value: impl Fn(usize, f64) -> DVec3 + Sync,
+        local: impl Fn(&[usize], &[f64], &mut Locals) + Sync,
+        value: impl Fn(usize, [f64; 2]) -> DVec3 + Sync,
     ) {
         // A table costs about as much to make as it saves on one query a segment.
         let table = if u.len() >= self.segments().max(64) { self.table() } else { None };
         let block = |u: &[f64], out: &mut [f64]| {
             let ascending = u.is_sorted();
             let (mut segments, mut hint) = ([0; STRIDE], 0);
+            let (mut wrapped, mut locals) = ([0.0; STRIDE], [[0.0; 2]; STRIDE]);
             for (u, out) in u.chunks(STRIDE).zip(out.chunks_mut(STRIDE * COLUMNS)) {
                 // First all segments, then all values: what the loops load from memory depends on
                 // no branch of the iteration before, so that cache misses overlap.
-                for (&u, segment) in u.iter().zip(&mut segments) {
+                for ((&u, segment), wrapped) in u.iter().zip(&mut segments).zip(&mut wrapped) {
+                    *wrapped = self.wrap(u);
                     *segment = match table {
-                        Some(table) if !ascending => table.segment(&self.knots, self.wrap(u)),
-                        _ => self.near(hint, self.wrap(u)),
+                        Some(table) if !ascending => table.segment(&self.knots, *wrapped),
+                        _ => self.near(hint, *wrapped),
                     };
                     hint = *segment;
                 }
-                for ((&u, &i), row) in u.iter().zip(&segments).zip(out.chunks_exact_mut(COLUMNS)) {
-                    row.copy_from_slice(&value(i, self.wrap(u)).to_array()[..COLUMNS]);
+                local(&segments[..u.len()], &wrapped[..u.len()], &mut locals);
+                for ((&l, &i), row) in
+                    locals.iter().zip(&segments).zip(out.chunks_exact_mut(COLUMNS))
+                {
+                    row.copy_from_slice(&value(i, l).to_array()[..COLUMNS]);
                 }
             }
         };
         let left = |u: &[f64], out: &mut [f64]| {
+            let mut locals = [[0.0; 2]; STRIDE];
             for (&u, row) in u.iter().zip(out.chunks_exact_mut(COLUMNS)) {
                 let (i, u) = self.find(u, Side::Left);
-                row.copy_from_slice(&value(i, u).to_array()[..COLUMNS]);
+                local(&[i], &[u], &mut locals);
+                row.copy_from_slice(&value(i, locals[0]).to_array()[..COLUMNS]);
             }
         };
         let one = |u: &[f64], out: &mut [f64]| match side {
@@ -327,12 +346,12 @@ impl PiecewiseCubic {
     /// Derivative with respect to `u` of a segment at local `t`, as weights of end points and legs.
     #[inline]
     fn derivative<const ORDER: usize>(&self, i: usize, t: f64) -> DVec3 {
-        self.derivative_at::<ORDER>(i, 1.0 - t, t)
+        self.derivative_at::<ORDER>(i, [1.0 - t, t])
     }
 
     /// The same at `[1 − t, t]`, for callers who know `1 − t` better than the difference does.
     #[inline]
-    pub(crate) fn derivative_at<const ORDER: usize>(&self, i: usize, s: f64, t: f64) -> DVec3 {
+    pub(crate) fn derivative_at<const ORDER: usize>(&self, i: usize, [s, t]: [f64; 2]) -> DVec3 {
         let (p, q, [a, c]) = (self.points[i], self.points[i + 1], self.legs[i]);
         if ORDER == 0 {
             // Exact at both ends, and the same run through backwards.

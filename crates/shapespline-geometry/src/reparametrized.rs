@@ -2,7 +2,9 @@
 
 use glam::DVec3;
 
-use crate::{Curve, InputError, MonotoneCubic, PiecewiseCubic, Side};
+use crate::{
+    Curve, InputError, MonotoneCubic, PiecewiseCubic, Side, monotone::Batch, piecewise::Locals,
+};
 
 /// The image of a piecewise cubic `C`, run through as `Q(s) = C(t(s))`, where on each segment
 /// `s(t)` is the cubic from `s_i` to `s_{i+1}` with the slopes `λ⁰_i, λ¹_i ∈ (0, 1]` relative to the
@@ -61,12 +63,23 @@ impl ReparametrizedCubic {
         self.map(i).solve([(s - knots[i]) * reciprocal, (knots[i + 1] - s) * reciprocal])
     }
 
-    /// Derivative with respect to `s` on segment `i`, by the chain rule.
+    /// The same for some parameters at once.
+    fn locals(&self, segments: &[usize], parameters: &[f64], out: &mut Locals) {
+        let mut batch = Batch::default();
+        let knots = self.cubic.knots();
+        for (j, (&i, &s)) in segments.iter().zip(parameters).enumerate() {
+            let reciprocal = 1.0 / (knots[i + 1] - knots[i]);
+            let value = [(s - knots[i]) * reciprocal, (knots[i + 1] - s) * reciprocal];
+            batch.put(j, self.map(i), value);
+        }
+        batch.solve(out);
+    }
+
+    /// Derivative with respect to `s` on segment `i` at `[1 − t, t]`, by the chain rule.
     #[inline]
-    fn derivative<const ORDER: usize>(&self, i: usize, parameter: f64) -> DVec3 {
-        let [s, t] = self.local(i, parameter);
+    fn derivative<const ORDER: usize>(&self, i: usize, [s, t]: [f64; 2]) -> DVec3 {
         if ORDER == 0 {
-            return self.cubic.derivative_at::<0>(i, s, t);
+            return self.cubic.derivative_at::<0>(i, [s, t]);
         }
         let knots = self.cubic.knots();
         let per_h = 1.0 / (knots[i + 1] - knots[i]);
@@ -80,17 +93,17 @@ impl ReparametrizedCubic {
             self.map(i).derivatives([s, t])
         };
         let per = 1.0 / speed;
-        let q1 = self.cubic.derivative_at::<1>(i, s, t) * per;
+        let q1 = self.cubic.derivative_at::<1>(i, [s, t]) * per;
         if ORDER == 1 {
             return q1;
         }
         let bend = second * per_h * per;
-        let q2 = (self.cubic.derivative_at::<2>(i, s, t) * per - q1 * bend) * per;
+        let q2 = (self.cubic.derivative_at::<2>(i, [s, t]) * per - q1 * bend) * per;
         if ORDER == 2 {
             return q2;
         }
         let third = third * per_h * per * per_h;
-        let c3 = self.cubic.derivative_at::<3>(i, s, t) * per;
+        let c3 = self.cubic.derivative_at::<3>(i, [s, t]) * per;
         ((c3 - q1 * third) * per - q2 * (3.0 * bend)) * per
     }
 }
@@ -112,6 +125,7 @@ impl Curve for ReparametrizedCubic {
     /// Orders above three are not offered: they give NaN.
     fn evaluate(&self, u: f64, order: usize, side: Side) -> DVec3 {
         let (i, u) = self.cubic.find(u, side);
+        let u = self.local(i, u);
         match order {
             0 => self.derivative::<0>(i, u),
             1 => self.derivative::<1>(i, u),
@@ -128,11 +142,13 @@ impl Curve for ReparametrizedCubic {
         side: Side,
         out: &mut [f64],
     ) -> Result<(), InputError> {
+        let local = |i: &[usize], u: &[f64], out: &mut Locals| self.locals(i, u, out);
+        let cubic = &self.cubic;
         match order {
-            0 => self.cubic.fill_with(u, side, out, |i, u| self.derivative::<0>(i, u)),
-            1 => self.cubic.fill_with(u, side, out, |i, u| self.derivative::<1>(i, u)),
-            2 => self.cubic.fill_with(u, side, out, |i, u| self.derivative::<2>(i, u)),
-            ORDERS => self.cubic.fill_with(u, side, out, |i, u| self.derivative::<3>(i, u)),
+            0 => cubic.fill_with(u, side, out, local, |i, l| self.derivative::<0>(i, l)),
+            1 => cubic.fill_with(u, side, out, local, |i, l| self.derivative::<1>(i, l)),
+            2 => cubic.fill_with(u, side, out, local, |i, l| self.derivative::<2>(i, l)),
+            ORDERS => cubic.fill_with(u, side, out, local, |i, l| self.derivative::<3>(i, l)),
             _ => Err(InputError::Scalar {
                 argument: "nu",
                 value: order as f64,

@@ -170,7 +170,6 @@ fn lambda_one_is_the_c2_cubic_and_one_lambda_a_node_a_nu_spline() {
                 lambda[n - 1] = lambda[0];
             }
             // (3.10), with the factor that makes ν dimensionless.
-            let segments = polygon.segments();
             let interior = |before: usize, i: usize, after: usize| {
                 let (h0, h1) = (polygon.spacing(before), polygon.spacing(i));
                 let (l0, l, l1) = (lambda[before], lambda[i], lambda[after]);
