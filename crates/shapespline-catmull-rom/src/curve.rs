@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 use shapespline_criteria::{Checker, Criteria, Tolerances};
 use shapespline_geometry::{Boundary, DataPolygon, InputError, PiecewiseCubic};
 use shapespline_search::{
-    Fit, FitError, Interpolant, SearchOptions, Tension, per_point, search_and_report,
+    Fit, FitError, Interpolant, Outcome, SearchOptions, Tension, per_point, search_and_report,
 };
 
 use crate::handles::Handles;
@@ -102,9 +102,17 @@ impl CatmullRom {
         let checker = Checker::new(&polygon, criteria, tolerances);
         let mut handles =
             Handles::limited(&polygon, checker.calls(), &tolerances, safety, continuity);
-        let rest = SearchOptions { criteria, tolerances, step: 0.25, ..SearchOptions::default() };
-        let go_on = &mut |_: &_| ControlFlow::Continue(());
-        let (mut outcome, report) = search_and_report(&mut handles, &checker, &rest, go_on)?;
+        let faults = checker.all_faults(|i| handles.legs()[i]);
+        let (mut outcome, report) = if faults.is_empty() {
+            (Outcome::solved(), checker.report_of(&faults, |i| handles.legs()[i]))
+        } else {
+            // What the closed forms leave: coplanarity, and faults of rounding.
+            handles = handles.under_tension();
+            let rest =
+                SearchOptions { criteria, tolerances, step: 0.25, ..SearchOptions::default() };
+            let go_on = &mut |_: &_| ControlFlow::Continue(());
+            search_and_report(&mut handles, &checker, &rest, go_on)?
+        };
         drop(checker);
         let (legs, tension) = handles.finish();
         outcome.diagnostics.nodes_changed = tension.iter().filter(|&&t| t > 0.0).count();

@@ -2,6 +2,7 @@
 
 use std::{convert::Infallible, ops::Range};
 
+use rayon::prelude::*;
 use shapespline_criteria::{Calls, Tolerances};
 use shapespline_geometry::{DVec3, DataPolygon};
 use shapespline_search::{TensionFamily, velocity_weight};
@@ -24,19 +25,26 @@ pub(crate) struct Handles<'a> {
     tension: Vec<f64>,
 }
 
+/// From this number of nodes on they are worked on by all threads, in blocks of this many.
+const BLOCK: usize = 4096;
+
+/// `make(0), …, make(count − 1)`.
+fn each<T: Send>(count: usize, make: impl Fn(usize) -> T + Sync + Send) -> Vec<T> {
+    if count < 2 * BLOCK {
+        (0..count).map(make).collect()
+    } else {
+        (0..count).into_par_iter().with_min_len(BLOCK).map(make).collect()
+    }
+}
+
 impl<'a> Handles<'a> {
     /// Handles of given factors, one a distinct node.
     pub(crate) fn new(polygon: &'a DataPolygon, factors: Vec<f64>) -> Self {
-        let tension = vec![0.0; factors.len()];
-        let mut legs = Vec::with_capacity(polygon.segments());
-        full_legs(polygon, |_, full| legs.push(full));
-        for (i, [a, c]) in legs.iter_mut().enumerate() {
-            *a *= factors[i];
-            *c *= factors[(i + 1) % factors.len()];
-        }
-        let mut new = Self { polygon, legs, factors, tension };
-        new.free_ends();
-        new
+        let legs = each(polygon.segments(), |i| {
+            let [a, c] = full_legs(polygon, i);
+            [a * factors[i], c * factors[(i + 1) % factors.len()]]
+        });
+        Self { polygon, legs, factors, tension: Vec::new() }.with_free_ends()
     }
 
     /// The largest handles, up to the full ones, that stay below `safety` times the bounds which the
@@ -50,73 +58,76 @@ impl<'a> Handles<'a> {
     ) -> Self {
         let sine = tolerances.collinearity;
         let cotangent = ((1.0 - sine) * (1.0 + sine)).sqrt() / sine;
-        let (n, nodes) = (polygon.segments(), polygon.nodes());
-        let mut legs: Vec<[DVec3; 2]> = Vec::with_capacity(n);
-        let mut factors = vec![1.0; nodes];
-        // Joins the factor `q` of the last leg before a node to the factor `p` of the leg after it.
-        let join = |node: usize, q: f64, p: f64| {
-            let before = if node == 0 { n - 1 } else { node - 1 };
+        let n = polygon.segments();
+        // Factors that each segment allows at its two ends.
+        let limits = each(n, |i| {
+            if !calls[i].any(bounded()) {
+                return [1.0; 2];
+            }
+            let on = bounds(polygon, i, calls[i], full_legs(polygon, i), cotangent);
+            on.map(|bound| f64::min(1.0, safety * bound))
+        });
+        // Factors of the legs before and after a node.
+        let joined = |node: usize| {
+            let (before, after) = match node {
+                0 if polygon.is_closed() => (n - 1, 0),
+                0 => return [limits[0][0]; 2],
+                _ if node < n => (node - 1, node),
+                _ if polygon.is_closed() => (n - 1, 0),
+                _ => return [limits[n - 1][1]; 2],
+            };
+            let (q, p) = (limits[before][1], limits[after][0]);
             // In an inflecting coplanar segment the legs decide where it inflects: one factor a node.
-            let split = || calls[before].and(calls[node]).any(Calls::SPLIT_COPLANARITY);
+            let split = || calls[before].and(calls[after]).any(Calls::SPLIT_COPLANARITY);
             let one = continuity == Continuity::C1 || split();
             if one { [q.min(p); 2] } else { [q, p] }
         };
-        let (mut first, mut before) = (1.0, 1.0);
-        full_legs(polygon, |i, [a, c]| {
-            let (mut p, mut q) = (1.0f64, 1.0f64);
-            if calls[i].any(bounded()) {
-                let [on_p, on_q] = bounds(polygon, i, calls[i], [a, c], cotangent);
-                (p, q) = (p.min(safety * on_p), q.min(safety * on_q));
-            }
-            if i == 0 {
-                first = p;
-                factors[0] = p;
-                legs.push([a * p, c]);
-            } else {
-                let [left, right] = join(i, before, p);
-                factors[i] = left.min(right);
-                if let Some(last) = legs.last_mut() {
-                    last[1] *= left;
-                }
-                legs.push([a * right, c]);
-            }
-            before = q;
+        let legs = each(n, |i| {
+            let [a, c] = full_legs(polygon, i);
+            [a * joined(i)[1], c * joined(i + 1)[0]]
         });
-        let [left, right] = if polygon.is_closed() {
-            join(0, before, first)
-        } else {
-            factors[n] = before;
-            [before, first]
-        };
-        legs[n - 1][1] *= left;
-        if polygon.is_closed() {
-            legs[0][0] *= right / first;
-            factors[0] = left.min(right);
-        }
-        let tension = vec![0.0; nodes];
-        let mut new = Self { polygon, legs, factors, tension };
-        new.free_ends();
-        new
+        let factors = each(polygon.nodes(), |i| {
+            let [before, after] = joined(i);
+            before.min(after)
+        });
+        Self { polygon, legs, factors, tension: Vec::new() }.with_free_ends()
+    }
+
+    /// The same, ready for the search.
+    pub(crate) fn under_tension(mut self) -> Self {
+        self.tension = vec![0.0; self.factors.len()];
+        self
+    }
+
+    /// First and last leg of each segment, before any tension.
+    pub(crate) fn legs(&self) -> &[[DVec3; 2]] {
+        &self.legs
     }
 
     /// The legs, and what every distinct node's handles were shortened by, as a part of the full.
-    pub(crate) fn finish(self) -> (Vec<[DVec3; 2]>, Vec<f64>) {
-        let shortening =
-            self.factors.iter().zip(&self.tension).map(|(f, t)| 1.0 - f / (1.0 + t)).collect();
-        let legs = if self.tension.iter().any(|&t| t > 0.0) {
-            (0..self.legs.len()).map(|i| self.end_legs(i)).collect()
-        } else {
-            self.legs
-        };
-        (legs, shortening)
+    pub(crate) fn finish(mut self) -> (Vec<[DVec3; 2]>, Vec<f64>) {
+        if !self.tension.is_empty() {
+            self.legs = (0..self.legs.len()).map(|i| self.end_legs(i)).collect();
+        }
+        for i in 0..self.factors.len() {
+            self.factors[i] = 1.0 - self.scale(i);
+        }
+        (self.legs, self.factors)
     }
 
-    /// Legs at ends of zero curvature: with `a = (L − c)/2`, or any part of it, `a × b` vanishes.
-    fn free_ends(&mut self) {
+    /// What the handles at a node are of the full ones.
+    fn scale(&self, node: usize) -> f64 {
+        self.factors[node] / (1.0 + self.tension.get(node).unwrap_or(&0.0))
+    }
+
+    /// With the legs at ends of zero curvature: for `a = (L − c)/2`, or any part of it, `a × b`
+    /// vanishes.
+    fn with_free_ends(mut self) -> Self {
         let last = self.legs.len() - 1;
         for i in [0, last] {
             self.legs[i] = self.freed(i, self.legs[i]);
         }
+        self
     }
 
     #[inline]
@@ -129,26 +140,19 @@ impl<'a> Handles<'a> {
             return [a, c];
         }
         let chord = self.polygon.chord(segment);
-        let scale = |node: usize| self.factors[node] / (1.0 + self.tension[node]);
         match (segment == 0, segment == last) {
-            (true, true) => [chord * (scale(0) / 3.0), chord * (scale(last + 1) / 3.0)],
-            (true, false) => [(chord - c) * (0.5 * scale(0)), c],
-            _ => [a, (chord - a) * (0.5 * scale(last + 1))],
+            (true, true) => [chord * (self.scale(0) / 3.0), chord * (self.scale(last + 1) / 3.0)],
+            (true, false) => [(chord - c) * (0.5 * self.scale(0)), c],
+            _ => [a, (chord - a) * (0.5 * self.scale(last + 1))],
         }
     }
 }
 
-/// Calls `take` with the full legs of every segment in order, each tangent made once. A leg at an end
-/// of zero curvature is zero here.
+/// The full legs of a segment. A leg at an end of zero curvature is zero here.
 #[inline]
-fn full_legs(polygon: &DataPolygon, mut take: impl FnMut(usize, [DVec3; 2])) {
-    let mut start = tangent(polygon, 0).unwrap_or_default();
-    for i in 0..polygon.segments() {
-        let end = tangent(polygon, i + 1).unwrap_or_default();
-        let third = polygon.spacing(i) / 3.0;
-        take(i, [start * third, end * third]);
-        start = end;
-    }
+fn full_legs(polygon: &DataPolygon, segment: usize) -> [DVec3; 2] {
+    let third = polygon.spacing(segment) / 3.0;
+    [segment, segment + 1].map(|node| tangent(polygon, node).unwrap_or_default() * third)
 }
 
 impl TensionFamily for Handles<'_> {

@@ -385,3 +385,38 @@ fn curves_can_be_sent_shared_and_written() {
     thread_safe::<TensionSpline>();
     thread_safe::<CatmullRom>();
 }
+
+/// Planar zigzags with very uneven spacing inside a polygon that is not planar: the inflection has to
+/// stay near (5.9), which equal `λ` alone would not bring about.
+#[test]
+fn split_coplanarity_with_uneven_spacing() {
+    let mut random = Random::new(77);
+    let mut called = 0;
+    for case in 0..150 {
+        let mut p = DVec3::ZERO;
+        let (mut points, mut parameters, mut u) = (vec![p], vec![0.0], 0.0);
+        for k in 0..14 {
+            let up = if k % 2 == 0 { 1.0 } else { -1.0 };
+            let out = if (3..10).contains(&k) { 0.0 } else { random.within(0.2, 1.0) };
+            p += DVec3::new(1.0, up * random.within(0.5, 1.5), out);
+            u += 10f64.powf(random.within(-3.0, 3.0));
+            points.push(p);
+            parameters.push(u);
+        }
+        let parametrization = Parametrization::Given(parameters);
+        let boundary = if case % 2 == 0 {
+            Boundary::ZeroCurvature
+        } else {
+            Boundary::Tangents { start: DVec3::X + DVec3::Y, end: DVec3::X - DVec3::Y }
+        };
+        let polygon = DataPolygon::new(points, &parametrization, boundary).unwrap();
+        for family in Family::DEFAULTS {
+            let fit = family.fit(polygon.clone());
+            let name = format!("{case} {family:?}: {:?}", fit.diagnostics());
+            assert_eq!(fit.diagnostics().status, Status::Solved, "{name}");
+            assert!(fit.diagnostics().iterations < 60, "{name}");
+            called += fit.report.count(Criterion::Coplanarity).applicable;
+        }
+    }
+    assert!(called > 1000, "{called}");
+}
