@@ -79,6 +79,7 @@ def data_polygon(
     spacing = np.diff(np.asarray(parameters, dtype=float))
     chords = np.diff(points, axis=0)
     closed = isinstance(boundary, str) and boundary == "periodic"
+    given = boundary is not None and not closed
     if closed:
         first, last = chords[-1], chords[0]
         spacing = np.r_[spacing[-1], spacing, spacing[0]]
@@ -92,6 +93,9 @@ def data_polygon(
     lengths = magnitude[:, 0] * norm(chords / magnitude)
     chords = chords / magnitude
     chords /= norm(chords)[:, None]
+    if given:
+        # A tangent is no chord. The chord that gives (5.9) the limit of (1 + ν) q = D is hD/6.
+        lengths[[0, -1]] *= spacing[[0, -1]] / 6
     binormals = np.cross(chords[:-1], chords[1:])
     binormals[norm(binormals) <= tolerance] = 0.0
     torsion = dot(np.cross(chords[:-2], chords[1:-1]), chords[2:])
@@ -105,15 +109,19 @@ def data_polygon(
     return Polygon(chords, lengths, spacing, binormals, torsion, turning, straight)
 
 
-def applicable(polygon: Polygon, coplanarity: float) -> dict[str, npt.NDArray[np.bool_]]:
+def applicable(
+    polygon: Polygon, coplanarity: float, tolerance: float
+) -> dict[str, npt.NDArray[np.bool_]]:
     """Return which criterion each segment calls for.
 
     Coplanarity is asked only of data that are not planar as a whole (5.34)–(5.37), and only where
-    the segment's own two binormals leave room for it: when they differ by more than ε₁/2, no
-    curve that follows both can satisfy it.
+    a plane is known: both turns must exceed the square root of the tolerance (next to a straight
+    node any Γ̂ is small), and the segment's own two binormals must leave room for it: when they
+    differ by more than ε₁/2, no curve that follows both can satisfy it.
     """
     sizes = norm(polygon.binormals)
-    bent = (sizes[:-1] > 0) & (sizes[1:] > 0)
+    known = np.sqrt(tolerance)
+    bent = (sizes[:-1] > known) & (sizes[1:] > known)
     sine = norm(np.cross(polygon.binormals[:-1], polygon.binormals[1:]))
     agree = sine <= coplanarity / 2 * sizes[:-1] * sizes[1:]
     solid = bool(np.any(polygon.torsion != 0))
@@ -226,21 +234,21 @@ def coplanarity(polygon: Polygon, s: Samples, sine: float) -> npt.NDArray[np.boo
     In the inflection case the middle of the segment is left out, as in section 5: the parts are
     [u_m, (u_m + u*)/2] and [(u* + u_{m+1})/2, u_{m+1}].
     """
-    normals = polygon.binormals[:-1]
-    size = norm(normals)[:, None]
-    normals = normals / np.where(size > 0, size, 1.0)
-    lean = norm(np.cross(s.omega, normals[:, None])) - sine * norm(s.omega)
-    along, noise = sign_against(s, normals)
-    # The binormal's own direction is uncertain by its rounding over its size.
-    noise = noise + ROUNDING * norm(s.omega) / np.where(size > 0, size, 1.0)
     middle = separating_point(polygon)[:, None]
     convex = (polygon.turning > 0)[:, None]
     parts = (convex | (s.t <= middle / 2), ~convex & (s.t >= (1 + middle) / 2))
     bad = np.zeros(len(s.first), dtype=bool)
-    for part in parts:
-        bad |= np.any(part & (lean > noise), axis=1)
-        # Within the cone around a line, ω can only change sides through zero.
-        bad |= np.any(part & (along > noise), axis=1) & np.any(part & (along < -noise), axis=1)
+    for normals in (polygon.binormals[:-1], polygon.binormals[1:]):
+        size = norm(normals)[:, None]
+        normals = normals / np.where(size > 0, size, 1.0)
+        lean = norm(np.cross(s.omega, normals[:, None])) - sine * norm(s.omega)
+        along, noise = sign_against(s, normals)
+        # The binormal's own direction is uncertain by its rounding over its size.
+        noise = noise + ROUNDING * norm(s.omega) / np.where(size > 0, size, 1.0)
+        for part in parts:
+            bad |= np.any(part & (lean > noise), axis=1)
+            # Within the cone around a line, ω can only change sides through zero.
+            bad |= np.any(part & (along > noise), axis=1) & np.any(part & (along < -noise), axis=1)
     return bad
 
 
@@ -281,7 +289,7 @@ def shape_by_sampling(
         Samples a segment, both ends included.
     """
     polygon = data_polygon(points, parameters, boundary, tolerance)
-    asked = applicable(polygon, coplanarity_sine)
+    asked = applicable(polygon, coplanarity_sine, tolerance)
     s = sample(polygon, np.asarray(parameters, dtype=float), derivative, count)
     found = {
         "convexity": convexity(polygon, s),
@@ -299,7 +307,10 @@ def of_curve(curve: object, **options: float) -> Sampled:
     if isinstance(boundary, str):
         if boundary == "circular":
             # Karavelas & Kaklis, Example 1: the ends' tangents are those of the circles.
-            boundary = (curve.tangents[0], curve.tangents[-1])
+            boundary = (
+                curve.tangents[0] * (1 + curve.tension[0]),
+                curve.tangents[-1] * (1 + curve.tension[-1]),
+            )
         elif boundary != "periodic":
             boundary = None
     else:

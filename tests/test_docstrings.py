@@ -45,7 +45,8 @@ def examples(name):
 
 def test_the_module_offers_what_it_should():
     assert {"NuSpline", "Tangents", "ShapeReport", "ConvergenceError"} <= set(PUBLIC)
-    assert {"NuSpline.shape_preserving", "NuSpline.check", "NuSpline.frame"} <= set(PUBLIC)
+    assert {"NuSpline.shape_preserving", "SpaceCurve.check", "SpaceCurve.frame"} <= set(PUBLIC)
+    assert issubclass(ss.NuSpline, ss.SpaceCurve)
     assert ss.__doc__
 
 

@@ -12,7 +12,7 @@ mod tridiagonal;
 
 pub use cyclic::solve_cyclic;
 pub use error::SolveError;
-pub use resolvable::{Resolvable, Row, Rows};
+pub use resolvable::{Resolvable, Row, Rows, solve_once};
 pub use tridiagonal::{RightHandSide, solve_tridiagonal};
 
 /// The examples of the README are run as tests.

@@ -6,7 +6,13 @@ use shapespline_geometry::{DVec3, DataPolygon, length};
 /// What of the polygon's calls has bounds on handles in closed form.
 #[inline]
 pub(crate) fn bounded() -> Calls {
-    Calls::CONVEXITY.and(Calls::INFLECTION).and(Calls::of(Criterion::Collinearity))
+    signs().and(Calls::of(Criterion::Collinearity))
+}
+
+/// Convexity, of which global convexity follows, and inflection.
+#[inline]
+fn signs() -> Calls {
+    Calls::CONVEXITY.and(Calls::GLOBAL_CONVEXITY).and(Calls::INFLECTION)
 }
 
 /// Bounds on the factors of the full legs `a, c` of a segment: handles strictly below both keep
@@ -23,7 +29,7 @@ pub(crate) fn bounds(
     cotangent: f64,
 ) -> [f64; 2] {
     let [mut p, mut q] = [f64::INFINITY; 2];
-    if calls.any(Calls::CONVEXITY.and(Calls::INFLECTION)) {
+    if calls.any(signs()) {
         let (a, c, chord) = near_one([a, c], polygon.chord(segment));
         let (x, first, last) = (a.cross(c), a.cross(chord), chord.cross(c));
         for n in [polygon.binormal(segment), polygon.binormal(segment + 1)] {

@@ -12,7 +12,7 @@ const BLOCK: usize = 4096;
 
 /// The conditions that a segment is asked to meet.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Calls(u8);
+pub struct Calls(u16);
 
 impl Calls {
     /// `P_m·P_{m+1} > 0`.
@@ -31,6 +31,8 @@ impl Calls {
     pub const LINE_AT_START: Self = Self(64);
     /// Three points on a line around the segment's last node.
     pub const LINE_AT_END: Self = Self(128);
+    /// `P_m·P_{m+1} > 0` again: the conditions of Definition 3.16 beyond local convexity.
+    pub const GLOBAL_CONVEXITY: Self = Self(256);
 
     /// Whether any call of `other` is among these.
     #[inline]
@@ -68,7 +70,14 @@ impl Calls {
             Criterion::Torsion => Self::RIGHT_TORSION.and(Self::LEFT_TORSION),
             Criterion::Coplanarity => Self::COPLANARITY.and(Self::SPLIT_COPLANARITY),
             Criterion::Collinearity => Self::LINE_AT_START.and(Self::LINE_AT_END),
+            Criterion::GlobalConvexity => Self::GLOBAL_CONVEXITY,
         }
+    }
+
+    /// The criteria that the calls belong to.
+    #[must_use]
+    pub fn criteria(self) -> Criteria {
+        Criterion::ALL.into_iter().filter(|&c| self.any(Self::of(c))).collect()
     }
 
     /// What each segment of a polygon calls for. Cost O(N).
@@ -108,7 +117,7 @@ fn of_segment(polygon: &DataPolygon, i: usize, tolerances: &Tolerances) -> Calls
         let cosine = p.dot(q) / both;
         let flat = gamma.abs() <= zero && plane_is_known(p, q, sines, tolerances);
         if cosine > zero {
-            calls = calls.and(Calls::CONVEXITY);
+            calls = calls.and(Calls::CONVEXITY).and(Calls::GLOBAL_CONVEXITY);
             if flat {
                 calls = calls.and(Calls::COPLANARITY);
             }

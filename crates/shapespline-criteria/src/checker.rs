@@ -6,7 +6,7 @@ use shapespline_geometry::DataPolygon;
 
 use crate::{
     Calls, Criteria, Criterion, Faults, Record, ShapeReport, Tolerances,
-    calls::{plane_normal, separation},
+    calls::separation,
     faults::{Cones, Situation, cone_faults, sign_faults},
     margin,
 };
@@ -18,6 +18,7 @@ const BLOCK: usize = 4096;
 #[derive(Debug, Clone)]
 pub struct Checker<'a> {
     polygon: &'a DataPolygon,
+    criteria: Criteria,
     tolerances: Tolerances,
     calls: Vec<Calls>,
 }
@@ -28,13 +29,19 @@ impl<'a> Checker<'a> {
     pub fn new(polygon: &'a DataPolygon, criteria: Criteria, tolerances: Tolerances) -> Self {
         let mut calls = Calls::of_polygon(polygon, &tolerances);
         calls.iter_mut().for_each(|c| *c = c.only(criteria));
-        Self { polygon, tolerances, calls }
+        Self { polygon, criteria, tolerances, calls }
     }
 
     /// The polygon.
     #[must_use]
     pub fn polygon(&self) -> &'a DataPolygon {
         self.polygon
+    }
+
+    /// What counts as near, and as zero.
+    #[must_use]
+    pub fn tolerances(&self) -> Tolerances {
+        self.tolerances
     }
 
     /// What each segment calls for.
@@ -54,7 +61,7 @@ impl<'a> Checker<'a> {
         let s = self.situation(segment, legs);
         let faults = sign_faults(&s, calls);
         if calls.any(Calls::of(Criterion::Coplanarity).and(Calls::of(Criterion::Collinearity))) {
-            return faults.and(cone_faults(&s, calls, &self.cones(segment, &s)));
+            return faults.and(cone_faults(&s, calls, &self.cones(segment)));
         }
         faults
     }
@@ -98,8 +105,9 @@ impl<'a> Checker<'a> {
             Criterion::Convexity => margin::convexity(&s),
             Criterion::Inflection => margin::inflection(&s),
             Criterion::Torsion => margin::torsion(&s, calls),
-            Criterion::Coplanarity => margin::coplanarity(&s, calls, &self.cones(segment, &s)),
-            Criterion::Collinearity => margin::collinearity(&s, calls, &self.cones(segment, &s)),
+            Criterion::Coplanarity => margin::coplanarity(&s, calls, &self.cones(segment)),
+            Criterion::Collinearity => margin::collinearity(&s, calls, &self.cones(segment)),
+            Criterion::GlobalConvexity => margin::global_convexity(&s),
         };
         record.satisfied = !self.faults(segment, legs).any(Faults::of(criterion));
         record.margin = margin.value;
@@ -121,13 +129,7 @@ impl<'a> Checker<'a> {
     where
         L: Fn(usize) -> [DVec3; 2],
     {
-        let mut report = ShapeReport::new(self.calls.len());
-        for calls in &self.calls {
-            for criterion in Criterion::ALL {
-                report.counts[criterion as usize].applicable +=
-                    usize::from(calls.any(Calls::of(criterion)));
-            }
-        }
+        let mut report = self.blank_report();
         for &(i, faults) in faults {
             for criterion in Criterion::ALL {
                 if faults.any(Faults::of(criterion)) {
@@ -139,13 +141,25 @@ impl<'a> Checker<'a> {
         report
     }
 
+    /// The report that says how often each criterion applies, and nothing else yet.
+    pub(crate) fn blank_report(&self) -> ShapeReport {
+        let mut report = ShapeReport::new(self.calls.len(), self.criteria);
+        for calls in &self.calls {
+            for criterion in Criterion::ALL {
+                report.counts[criterion as usize].applicable +=
+                    usize::from(calls.any(Calls::of(criterion)));
+            }
+        }
+        report
+    }
+
     #[inline]
     fn situation(&self, i: usize, legs: [DVec3; 2]) -> Situation {
         let (p, q) = (self.polygon.binormal(i), self.polygon.binormal(i + 1));
         Situation::new(legs, self.polygon.chord(i), p, q)
     }
 
-    fn cones(&self, i: usize, s: &Situation) -> Cones {
+    pub(crate) fn cones(&self, i: usize) -> Cones {
         let calls = self.calls[i];
         let parts = if calls.any(Calls::SPLIT_COPLANARITY) {
             let flip = separation(self.polygon, i);
@@ -158,8 +172,9 @@ impl<'a> Checker<'a> {
             let [before, after] = self.polygon.directions_at(node);
             (before + after).normalize_or_zero()
         };
+        let normals = [i, i + 1].map(|node| self.polygon.binormal(node).normalize_or_zero());
         Cones {
-            plane: (self.tolerances.coplanarity, plane_normal(s.p, s.q)),
+            plane: (self.tolerances.coplanarity, normals),
             parts,
             line: (self.tolerances.collinearity, [line(i), line(i + 1)]),
         }
@@ -199,6 +214,7 @@ impl Faults {
                 .and(Self::LINE_AT_END)
                 .and(Self::LINE_BEFORE_END)
                 .and(Self::LINE_INSIDE_END),
+            Criterion::GlobalConvexity => Self::GLOBAL_CONVEXITY,
         }
     }
 }

@@ -18,12 +18,21 @@ pub enum Criterion {
     Coplanarity,
     /// Near a line where three points lie on one.
     Collinearity,
+    /// Convexity, and the curve seen along both binormal vectors neither turns past its own start nor
+    /// crosses itself.
+    GlobalConvexity,
 }
 
 impl Criterion {
-    /// All criteria, in the order of reports.
-    pub const ALL: [Self; 5] =
-        [Self::Convexity, Self::Inflection, Self::Torsion, Self::Coplanarity, Self::Collinearity];
+    /// All criteria, in the order of reports: the default ones, then what has to be asked for.
+    pub const ALL: [Self; 6] = [
+        Self::Convexity,
+        Self::Inflection,
+        Self::Torsion,
+        Self::Coplanarity,
+        Self::Collinearity,
+        Self::GlobalConvexity,
+    ];
 
     /// The name users write.
     #[must_use]
@@ -34,6 +43,7 @@ impl Criterion {
             Self::Torsion => "torsion",
             Self::Coplanarity => "coplanarity",
             Self::Collinearity => "collinearity",
+            Self::GlobalConvexity => "global-convexity",
         }
     }
 
@@ -57,8 +67,11 @@ pub struct Criteria(u8);
 impl Criteria {
     /// No criterion.
     pub const NONE: Self = Self(0);
-    /// The default: every criterion there is here.
+    /// The default: all but global convexity, which asks more of a curve than the papers'
+    /// algorithms promise.
     pub const ALL: Self = Self(0b1_1111);
+    /// Every criterion there is, global convexity included.
+    pub const EVERY: Self = Self(0b11_1111);
 
     /// Whether the set holds a criterion.
     #[must_use]

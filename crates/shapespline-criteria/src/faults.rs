@@ -6,13 +6,14 @@ use shapespline_geometry::bernstein::quadratic_is_positive;
 use crate::{
     Calls,
     cone::{Quadratic, end_is_inside, inside, part},
+    global::is_globally_convex,
 };
 
 /// The conditions that fail on a segment `m`, as the failure sets (5.40)–(5.57) of paper 001
 /// (corrected by E3) and Theorems 13.6–13.11 of paper 002 distinguish them: the place of a failure
 /// decides which tensions can mend it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
-pub struct Faults(u16);
+pub struct Faults(u32);
 
 impl Faults {
     /// Convexity, at node m: `ω(u_m)·P_n ≤ 0` (K₀₁).
@@ -47,6 +48,8 @@ impl Faults {
     pub const LINE_BEFORE_END: Self = Self(16384);
     /// Collinearity at node m+1, inside its interval (J₁₂).
     pub const LINE_INSIDE_END: Self = Self(32768);
+    /// Global convexity, anywhere on the segment.
+    pub const GLOBAL_CONVEXITY: Self = Self(65536);
 
     /// Whether nothing fails.
     #[inline]
@@ -133,12 +136,20 @@ impl Situation {
 /// What the coplanarity and collinearity conditions need beyond the legs.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Cones {
-    /// `ε₁` and the plane normal.
-    pub(crate) plane: (f64, DVec3),
+    /// `ε₁` and the unit binormal vectors at the two nodes: both are normals of the plane, up to the
+    /// tolerance of `Γ = 0`, and (2.5) is asked of both.
+    pub(crate) plane: (f64, [DVec3; 2]),
     /// `t^ℓ, t^r`: the parts `[0, t^ℓ]` and `[t^r, 1]` of a split coplanarity.
     pub(crate) parts: [f64; 2],
     /// `ε₀` and the line directions at the two nodes.
     pub(crate) line: (f64, [DVec3; 2]),
+}
+
+impl Cones {
+    /// For questions that ask of no cone.
+    pub(crate) fn none() -> Self {
+        Self { plane: (1.0, [DVec3::ZERO; 2]), parts: [0.0, 1.0], line: (1.0, [DVec3::ZERO; 2]) }
+    }
 }
 
 /// Collinearity is asked on this part of a segment next to the node.
@@ -157,10 +168,13 @@ pub(crate) fn sign_faults(s: &Situation, calls: Calls) -> Faults {
             faults.add(Faults::CONVEXITY_AT_END, !end);
             let between = quadratic_is_positive(a0, g0, b0) && quadratic_is_positive(a1, g1, b1);
             faults.add(Faults::CONVEXITY_BETWEEN, start && end && !between);
-        } else {
+        } else if calls.any(Calls::INFLECTION) {
             faults.add(Faults::INFLECTION_AT_START, !(a0 > 0.0 && a1 < 0.0));
             faults.add(Faults::INFLECTION_AT_END, !(b0 < 0.0 && b1 > 0.0));
         }
+    }
+    if calls.any(Calls::GLOBAL_CONVEXITY) {
+        faults.add(Faults::GLOBAL_CONVEXITY, !is_globally_convex(s));
     }
     if calls.any(Calls::RIGHT_TORSION) {
         faults.add(Faults::TORSION, !(s.determinant() > 0.0));
@@ -174,24 +188,22 @@ pub(crate) fn sign_faults(s: &Situation, calls: Calls) -> Faults {
 pub(crate) fn cone_faults(s: &Situation, calls: Calls, cones: &Cones) -> Faults {
     let mut faults = Faults::default();
     if calls.any(Calls::COPLANARITY.and(Calls::SPLIT_COPLANARITY)) {
-        let (epsilon, normal) = cones.plane;
+        let (epsilon, normals) = cones.plane;
+        let end_is_near = |w: DVec3| normals.iter().all(|&n| end_is_inside(w, n, epsilon));
+        let is_near = |w: Quadratic| normals.iter().all(|&n| inside(w, n, epsilon).holds());
         let omega = s.omega_quadratic();
-        let start = end_is_inside(omega[0], normal, epsilon);
-        let end = end_is_inside(omega[2], normal, epsilon);
+        let (start, end) = (end_is_near(omega[0]), end_is_near(omega[2]));
         faults.add(Faults::COPLANARITY_AT_START, !start);
         faults.add(Faults::COPLANARITY_AT_END, !end);
         if calls.any(Calls::COPLANARITY) {
-            let between = start && end && !inside(omega, normal, epsilon).holds();
-            faults.add(Faults::COPLANARITY_BETWEEN, between);
+            faults.add(Faults::COPLANARITY_BETWEEN, start && end && !is_near(omega));
         } else {
             // A failure at the node itself is the fault above; here it is the rest of each part.
             let [left, right] = cones.parts;
-            let inner = |v: Quadratic, node: bool, far: DVec3| {
-                let holds = || inside(v, normal, epsilon).holds();
-                !end_is_inside(far, normal, epsilon) || (node && !holds())
-            };
             let (first, last) = (part(omega, 0.0, left), part(omega, right, 1.0));
-            let split = inner(first, start, first[2]) || inner(last, end, last[0]);
+            let fails =
+                |v: Quadratic, node: bool, far: DVec3| !end_is_near(far) || (node && !is_near(v));
+            let split = fails(first, start, first[2]) || fails(last, end, last[0]);
             faults.add(Faults::COPLANARITY_SPLIT, split);
         }
     }

@@ -16,21 +16,34 @@
 //! of spline curves*, Definitions 3.1, 6.1, 8.2, 9.2, 10.1 and section 13.
 //!
 //! [`Checker`] prepares what the polygon calls for; [`Checker::faults`] is the fast verdict on one
-//! segment; [`Checker::records`] measures margins; [`check`] makes the [`ShapeReport`].
+//! segment; [`Checker::record`] measures its margin; [`check`] makes the [`ShapeReport`].
 
 mod calls;
 mod checker;
 mod cone;
 mod criterion;
 mod faults;
+mod general;
+mod global;
+mod inflections;
 mod margin;
+mod notes;
+mod polygon_shape;
 mod report;
+mod sign_changes;
 
 pub use calls::{Calls, separation};
 pub use checker::{Checker, check};
 pub use criterion::{Criteria, Criterion, Tolerances};
 pub use faults::Faults;
-pub use report::{Count, Record, ShapeReport};
+pub use general::{CurveChecker, CurveError, INTERPOLATION, check_curve};
+pub use inflections::{
+    InflectionCount, curve_inflections, curve_inflections_from, polygon_inflections,
+    polygon_inflections_from,
+};
+pub use notes::{NodeCondition, NodeRecord, Notes, Oscillation};
+pub use polygon_shape::{Extent, PolygonShape, polygon_shape};
+pub use report::{Count, Record, ShapeReport, Undecided};
 
 /// The examples of the README are run as tests.
 #[cfg(doctest)]

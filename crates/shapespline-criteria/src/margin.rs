@@ -2,13 +2,17 @@
 //!
 //! | criterion | margin |
 //! |---|---|
-//! | convexity | least of the cosines between `ω` and `P_n` at the ends, and of Lemma 5.1's middle condition over the sizes in it |
-//! | inflection | least of the four cosines, with the signs asked for |
+//! | convexity | least of `ω·P_n` at the ends and of Lemma 5.1's middle condition, each over the sizes in it |
+//! | inflection | least of the four `ω·P_n` at the ends over their sizes, with the signs asked for |
 //! | torsion | `±det[a, L, c] / (‖a‖‖L‖‖c‖)` |
 //! | coplanarity, collinearity | `ε` less the sine of the largest angle |
+//! | global convexity | least of the margin of convexity and of `(a×L)·P_n`, `(L×c)·P_n` over their sizes |
 //!
-//! All lie in `[−1, 1]`, are positive exactly when the condition holds, and are continuous in the
-//! data wherever the vectors in them do not vanish.
+//! The size of `ω(0) = a×L − a×c` is `‖a‖(‖L‖ + ‖c‖)`, that of `ω(1)` likewise: what the products
+//! could be at most, not what they are. So a margin passes through zero where a plane curve is about
+//! to inflect, and does not jump from 1 to −1 there as the cosine of the angle would. All margins lie
+//! in `[−1, 1]`, are positive exactly when the condition holds, and are continuous in the data
+//! wherever the legs `a, c` do not vanish.
 
 use glam::DVec3;
 use shapespline_geometry::bernstein::{Positivity, quadratic_minimum};
@@ -17,6 +21,7 @@ use crate::{
     Calls,
     cone::{Quadratic, inside, part},
     faults::{Cones, LINE_PART, Situation},
+    global::chord_turns,
 };
 
 /// A margin and the local parameter where it is smallest.
@@ -27,7 +32,7 @@ pub(crate) struct Margin {
 }
 
 impl Margin {
-    fn least(self, other: Self) -> Self {
+    pub(crate) fn least(self, other: Self) -> Self {
         if other.value < self.value { other } else { self }
     }
 }
@@ -37,28 +42,50 @@ fn ratio(x: f64, size: f64) -> f64 {
     if size > 0.0 { x / size } else { 0.0 }
 }
 
+/// The sizes of `ω(0)`, of its middle coefficient `a×c`, and of `ω(1)`.
+fn sizes(s: &Situation) -> [f64; 3] {
+    let (a, chord, c) = (s.a.length(), s.chord.length(), s.c.length());
+    [a * (chord + c), a * c, c * (chord + a)]
+}
+
 pub(crate) fn convexity(s: &Situation) -> Margin {
-    let sizes = s.omega.map(DVec3::length);
-    [s.p, s.q]
-        .map(|n| {
-            let [alpha, gamma, beta] = s.omega_along(n.normalize_or_zero());
-            let geometric = alpha.max(0.0).sqrt() * beta.max(0.0).sqrt();
-            let between =
-                ratio(2.0 * geometric + gamma, 2.0 * sizes[0].sqrt() * sizes[2].sqrt() + sizes[1]);
-            Margin { value: ratio(alpha, sizes[0]), at: 0.0 }
-                .least(Margin { value: ratio(beta, sizes[2]), at: 1.0 })
-                .least(Margin { value: between, at: quadratic_minimum(alpha, gamma, beta) })
-        })
-        .into_iter()
-        .reduce(Margin::least)
-        .unwrap_or(Margin { value: f64::NAN, at: 0.0 })
+    let [first, middle, last] = sizes(s);
+    let of = |n: DVec3| {
+        let [alpha, gamma, beta] = s.omega_along(n.normalize_or_zero());
+        let start = Margin { value: ratio(alpha, first), at: 0.0 };
+        let end = Margin { value: ratio(beta, last), at: 1.0 };
+        // With an end below zero there is no middle condition.
+        let geometric = alpha.max(0.0).sqrt() * beta.max(0.0).sqrt();
+        let size = 2.0 * first.sqrt() * last.sqrt() + middle;
+        let between = Margin {
+            value: ratio(2.0 * geometric + gamma, size),
+            at: quadratic_minimum(alpha, gamma, beta),
+        };
+        start.least(end).least(between)
+    };
+    of(s.p).least(of(s.q))
+}
+
+pub(crate) fn global_convexity(s: &Situation) -> Margin {
+    let chord = s.chord.length();
+    let sizes = [s.a.length() * chord, s.c.length() * chord];
+    let lengths = [s.p.length(), s.q.length()];
+    let mut margin = convexity(s);
+    for (turns, length) in chord_turns(s).into_iter().zip(lengths) {
+        // Where the end tangents see the other end: both at the end of the segment.
+        for (turn, size) in turns.into_iter().zip(sizes) {
+            margin = margin.least(Margin { value: ratio(turn, size * length), at: 1.0 });
+        }
+    }
+    margin
 }
 
 pub(crate) fn inflection(s: &Situation) -> Margin {
     let [first, _, last] = s.omega;
-    let cosine = |w: DVec3, n: DVec3| ratio(w.dot(n.normalize_or_zero()), w.length());
-    Margin { value: cosine(first, s.p).min(-cosine(first, s.q)), at: 0.0 }
-        .least(Margin { value: (-cosine(last, s.p)).min(cosine(last, s.q)), at: 1.0 })
+    let [start, _, end] = sizes(s);
+    let along = |w: DVec3, n: DVec3, size: f64| ratio(w.dot(n.normalize_or_zero()), size);
+    Margin { value: along(first, s.p, start).min(-along(first, s.q, start)), at: 0.0 }
+        .least(Margin { value: (-along(last, s.p, end)).min(along(last, s.q, end)), at: 1.0 })
 }
 
 pub(crate) fn torsion(s: &Situation, calls: Calls) -> Margin {
@@ -69,9 +96,11 @@ pub(crate) fn torsion(s: &Situation, calls: Calls) -> Margin {
 }
 
 pub(crate) fn coplanarity(s: &Situation, calls: Calls, cones: &Cones) -> Margin {
-    let (epsilon, normal) = cones.plane;
+    let (epsilon, [p, q]) = cones.plane;
     let over = |from: f64, to: f64| {
-        cone_margin(epsilon, normal, (from, to), part(s.omega_quadratic(), from, to))
+        let omega = part(s.omega_quadratic(), from, to);
+        let margin = |normal| cone_margin(epsilon, normal, (from, to), omega);
+        margin(p).least(margin(q))
     };
     if calls.any(Calls::COPLANARITY) {
         over(0.0, 1.0)

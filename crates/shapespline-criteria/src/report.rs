@@ -1,6 +1,6 @@
 //! The report: what was asked, what holds, where not, and by how much.
 
-use crate::Criterion;
+use crate::{Criteria, Criterion};
 
 /// One criterion on one segment.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -29,26 +29,43 @@ pub struct Count {
     pub applicable: usize,
 }
 
+/// A criterion that could be neither proved nor refuted on a segment: something in it is zero to
+/// rounding. Segments of one cubic are always decided.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Undecided {
+    /// Index of the segment, from 0.
+    pub segment: usize,
+    /// The criterion.
+    pub criterion: Criterion,
+    /// The parameters `u` between which the question stays open.
+    pub interval: [f64; 2],
+}
+
 /// What a check found. It holds the violations only; its size does not grow with a clean curve.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct ShapeReport {
     /// Number of segments that were checked.
     pub segments: usize,
+    /// The criteria that were asked.
+    pub criteria: Criteria,
     /// One count a criterion, in the order of [`Criterion::ALL`].
-    pub counts: [Count; 5],
+    pub counts: [Count; 6],
     /// The violations, ascending by segment.
     pub violations: Vec<Record>,
+    /// What stays open, ascending by segment.
+    pub undecided: Vec<Undecided>,
 }
 
 impl ShapeReport {
-    pub(crate) fn new(segments: usize) -> Self {
-        Self { segments, counts: Default::default(), violations: Vec::new() }
+    pub(crate) fn new(segments: usize, criteria: Criteria) -> Self {
+        let (counts, violations, undecided) = Default::default();
+        Self { segments, criteria, counts, violations, undecided }
     }
 
-    /// Whether every criterion that applies is satisfied.
+    /// Whether every criterion that applies is satisfied, and none is left open.
     #[must_use]
     pub fn ok(&self) -> bool {
-        self.violations.is_empty()
+        self.violations.is_empty() && self.undecided.is_empty()
     }
 
     /// How often a criterion applies and is violated.
@@ -58,28 +75,42 @@ impl ShapeReport {
     }
 }
 
-/// Violations that a printed report lists before it only counts them.
+/// Violations (and open questions) that a printed report lists before it only counts them.
 const LISTED: usize = 20;
 
 impl std::fmt::Display for ShapeReport {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let verdict = if self.ok() { "shape preserved" } else { "shape violated" };
+        let verdict = match (self.ok(), self.violations.is_empty()) {
+            (true, _) => "shape preserved",
+            (false, true) => "shape undecided",
+            (false, false) => "shape violated",
+        };
         writeln!(f, "{verdict} on {} segments", self.segments)?;
-        writeln!(f, "{:<14}{:>10}{:>12}", "criterion", "violated", "applicable")?;
-        for criterion in Criterion::ALL {
+        writeln!(f, "{:<17}{:>10}{:>12}", "criterion", "violated", "applicable")?;
+        for criterion in self.criteria.iter() {
             let count = self.count(criterion);
-            writeln!(f, "{criterion:<14}{:>10}{:>12}", count.violated, count.applicable)?;
+            writeln!(f, "{criterion:<17}{:>10}{:>12}", count.violated, count.applicable)?;
         }
-        if self.ok() {
-            return Ok(());
+        let more = |f: &mut std::fmt::Formatter<'_>, n: usize| match n.checked_sub(LISTED) {
+            Some(rest) if rest > 0 => writeln!(f, "… and {rest} more"),
+            _ => Ok(()),
+        };
+        if !self.violations.is_empty() {
+            writeln!(f, "{:<17}{:>10}{:>12}{:>16}", "violation", "segment", "margin", "at u")?;
+            for v in self.violations.iter().take(LISTED) {
+                let Record { segment, criterion, margin, location, .. } = v;
+                writeln!(f, "{criterion:<17}{segment:>10}{margin:>12.3e}{location:>16.9}")?;
+            }
+            more(f, self.violations.len())?;
         }
-        writeln!(f, "{:<14}{:>10}{:>12}{:>16}", "violation", "segment", "margin", "at u")?;
-        for v in self.violations.iter().take(LISTED) {
-            let criterion = v.criterion;
-            writeln!(f, "{criterion:<14}{:>10}{:>12.3e}{:>16.9}", v.segment, v.margin, v.location)?;
-        }
-        if self.violations.len() > LISTED {
-            writeln!(f, "… and {} more", self.violations.len() - LISTED)?;
+        if !self.undecided.is_empty() {
+            writeln!(f, "{:<17}{:>10}{:>16}{:>16}", "undecided", "segment", "from u", "to u")?;
+            for Undecided { segment, criterion, interval: [from, to] } in
+                self.undecided.iter().take(LISTED)
+            {
+                writeln!(f, "{criterion:<17}{segment:>10}{from:>16.9}{to:>16.9}")?;
+            }
+            more(f, self.undecided.len())?;
         }
         Ok(())
     }

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::{Frame, InputError, PiecewiseCubic, Side, curvature, curvature_vector, frame, torsion};
+use crate::{Frame, InputError, PiecewiseCubic, Side};
 
 /// A curve whose image is a piecewise cubic, run through in a parameter `u` of its own.
 ///
@@ -40,33 +40,27 @@ pub trait Curve: Send + Sync {
         [1, 2, 3].map(|order| self.evaluate(u, order, side))
     }
 
-    /// Derivatives with respect to the Bézier parameter: for what depends on the image alone.
-    fn image_derivatives(&self, u: f64, side: Side) -> [DVec3; 3] {
-        let (segment, t) = self.locate(u, side);
-        self.cubic().segment(segment).derivatives(t)
-    }
-
     /// Curvature, in reciprocal units of length.
     fn curvature(&self, u: f64, side: Side) -> f64 {
-        let [first, second, _] = self.image_derivatives(u, side);
-        curvature(first, second)
+        let (segment, t) = self.locate(u, side);
+        self.cubic().segment(segment).curvature(t)
     }
 
     /// Curvature times the principal normal.
     fn curvature_vector(&self, u: f64, side: Side) -> DVec3 {
-        let [first, second, _] = self.image_derivatives(u, side);
-        curvature_vector(first, second)
+        let (segment, t) = self.locate(u, side);
+        self.cubic().segment(segment).curvature_vector(t)
     }
 
     /// Torsion, in reciprocal units of length; NaN where the curvature vanishes.
     fn torsion(&self, u: f64, side: Side) -> f64 {
-        let [first, second, third] = self.image_derivatives(u, side);
-        torsion(first, second, third)
+        let (segment, t) = self.locate(u, side);
+        self.cubic().segment(segment).torsion(t)
     }
 
     /// The Frenet frame.
     fn frame(&self, u: f64, side: Side) -> Frame {
-        let [first, second, _] = self.image_derivatives(u, side);
-        frame(first, second)
+        let (segment, t) = self.locate(u, side);
+        self.cubic().segment(segment).frame(t)
     }
 }

@@ -48,7 +48,7 @@ pub enum InputError {
         value: glam::DVec3,
     },
     /// Parameters that do not increase strictly.
-    #[error("{argument} must increase strictly, but {argument}[{index}] = {value} does not exceed \
+    #[error("{argument} must be strictly increasing, but {argument}[{index}] = {value} does not exceed \
              {argument}[{before}] = {previous}", before = index - 1)]
     NotIncreasing {
         /// Name of the argument.

@@ -1,5 +1,7 @@
 //! The data polygon: what the points themselves say about the shape of a curve through them.
 
+use std::sync::OnceLock;
+
 use glam::DVec3;
 
 use crate::{
@@ -42,12 +44,12 @@ impl Dimension {
 ///
 /// All shape quantities are made of *unit* chords `l_i = L_i/‖L_i‖`, so they do not depend on the
 /// scale of the data: `‖binormal(i)‖` is the sine of the turning angle at node `i`.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub struct DataPolygon {
     points: Vec<DVec3>,
     parameters: Vec<f64>,
-    /// `l_{−1}, l_0, …, l_{N−1}, l_N`.
-    directions: Vec<DVec3>,
+    /// `l_{−1}, l_0, …, l_{N−1}, l_N`, made when shape is first asked for.
+    directions: OnceLock<Vec<DVec3>>,
     boundary: Boundary,
     /// `D_0` and `D_N`, where the boundary has them.
     tangents: Option<[DVec3; 2]>,
@@ -93,17 +95,11 @@ impl DataPolygon {
         boundary: Boundary,
     ) -> Result<Self, InputError> {
         check_points(&points, boundary)?;
-        let mut directions = unit_chords(&points)?;
+        check_chords(&points)?;
         let parameters = parametrization.parameters(&points)?;
         check_velocities(&points, &parameters)?;
         let tangents = end_tangents(&points, &parameters, boundary)?;
-
-        let n = points.len() - 1;
-        (directions[0], directions[n + 1]) = match (boundary, tangents) {
-            (Boundary::Periodic, _) => (directions[n], directions[1]),
-            (_, Some([start, end])) => (normalize(start), normalize(end)),
-            (_, None) => (directions[1], directions[n]),
-        };
+        let directions = OnceLock::new();
         Ok(Self { points, parameters, directions, boundary, tangents, dimension })
     }
 
@@ -182,18 +178,36 @@ impl DataPolygon {
         self.points[segment + 1] - self.points[segment]
     }
 
+    #[inline]
+    fn directions(&self) -> &[DVec3] {
+        self.directions.get_or_init(|| {
+            let n = self.segments();
+            let mut all = Vec::with_capacity(n + 2);
+            all.push(DVec3::ZERO);
+            all.extend((0..n).map(|i| normalize(self.chord(i))));
+            all.push(DVec3::ZERO);
+            (all[0], all[n + 1]) = match (self.is_closed(), self.tangents) {
+                (true, _) => (all[n], all[1]),
+                (_, Some([start, end])) => (normalize(start), normalize(end)),
+                (_, None) => (all[1], all[n]),
+            };
+            all
+        })
+    }
+
     /// Unit chord `l_i`.
     #[inline]
     #[must_use]
     pub fn direction(&self, segment: usize) -> DVec3 {
-        self.directions[segment + 1]
+        self.directions()[segment + 1]
     }
 
     /// The unit chords `l_{i−1}, l_i` that meet at a node (with the stand-ins at the ends).
     #[inline]
     #[must_use]
     pub fn directions_at(&self, node: usize) -> [DVec3; 2] {
-        [self.directions[node], self.directions[node + 1]]
+        let directions = self.directions();
+        [directions[node], directions[node + 1]]
     }
 
     /// Binormal vector of the unit chords at a node, `l_{i−1} × l_i`: `P_i` scaled so that its
@@ -201,14 +215,15 @@ impl DataPolygon {
     #[inline]
     #[must_use]
     pub fn binormal(&self, node: usize) -> DVec3 {
-        self.directions[node].cross(self.directions[node + 1])
+        let directions = self.directions();
+        directions[node].cross(directions[node + 1])
     }
 
     /// `det[l_{i−1}, l_i, l_{i+1}]` of a segment: `Γ_i` of the unit chords.
     #[inline]
     #[must_use]
     pub fn gamma(&self, segment: usize) -> f64 {
-        self.binormal(segment).dot(self.directions[segment + 2])
+        self.binormal(segment).dot(self.directions()[segment + 2])
     }
 
     /// Discrete torsion `Γ_i / (‖P_i‖ ‖P_{i+1}‖)` of a segment (paper 001, (2.1)), in reciprocal
@@ -254,24 +269,19 @@ fn check_points(points: &[DVec3], boundary: Boundary) -> Result<(), InputError> 
     Ok(())
 }
 
-/// Unit chords with a free place at either end for the stand-ins.
-fn unit_chords(points: &[DVec3]) -> Result<Vec<DVec3>, InputError> {
-    let mut directions = Vec::with_capacity(points.len() + 1);
-    directions.push(DVec3::ZERO);
+/// Neighbours must differ, and by no more than f64 holds.
+fn check_chords(points: &[DVec3]) -> Result<(), InputError> {
     for (i, pair) in points.windows(2).enumerate() {
+        if pair[0] == pair[1] {
+            return Err(InputError::RepeatedPoint { index: i + 1, value: pair[1] });
+        }
         let chord = pair[1] - pair[0];
-        let direction = normalize(chord);
-        if direction == DVec3::ZERO {
-            if pair[0] == pair[1] {
-                return Err(InputError::RepeatedPoint { index: i + 1, value: pair[1] });
-            }
+        if !chord.is_finite() {
             let value = crate::length(chord);
             return Err(InputError::Overflow { index: i, what: "the chord", value });
         }
-        directions.push(direction);
     }
-    directions.push(DVec3::ZERO);
-    Ok(directions)
+    Ok(())
 }
 
 /// A chord over its spacing is the size of a tangent: if that overflows, so would every answer.

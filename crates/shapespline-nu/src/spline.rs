@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 use shapespline_geometry::{Boundary, DVec3, DataPolygon, PiecewiseCubic};
 use shapespline_search::{
     Fit, FitError, Interpolant, SearchOptions, SolvedFamily, Step, Tension, per_point,
-    search_and_report,
+    search_and_report, solve_legs,
 };
 
 use crate::system::NuSystem;
@@ -25,8 +25,8 @@ impl NuSpline {
     /// Tension that is negative, not finite, or not one a point; tangents that overflow.
     pub fn new(polygon: DataPolygon, tension: Tension<'_>) -> Result<Self, FitError> {
         let tension = tension.non_negative(&polygon)?;
-        let family = SolvedFamily::new(NuSystem { polygon: &polygon, tension })?;
-        let (legs, NuSystem { tension, .. }) = family.finish();
+        let system = NuSystem { polygon: &polygon, tension };
+        let (legs, tension) = (solve_legs(&system)?, system.tension);
         Self::assemble(polygon, legs, tension)
     }
 

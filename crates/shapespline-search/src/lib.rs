@@ -37,5 +37,5 @@ pub use options::{SearchOptions, Strategy};
 pub use outcome::{Diagnostics, Fit, Outcome, Phase, Status, Step};
 pub use pattern::Pattern;
 pub use search::{search, search_and_report};
-pub use system::{SolvedFamily, TensionSystem};
+pub use system::{SolvedFamily, TensionSystem, solve_legs};
 pub use tension::{Tension, per_point};

@@ -14,13 +14,14 @@ pub struct Pattern {
 impl Pattern {
     /// The pattern that mends the faults of a segment.
     ///
-    /// A fault between the nodes, of torsion, or of a split coplanarity needs all four nodes; one at
-    /// node m needs its neighbours m−1 and m+1 (Lemma 5.4), one at node m+1 needs m and m+2; the
+    /// A fault between the nodes, of global convexity, of torsion, or of a split coplanarity needs all
+    /// four nodes; one at node m needs its neighbours m−1 and m+1 (Lemma 5.4), one at node m+1 needs m and m+2; the
     /// inflection conditions are conditions at the nodes. A fault of collinearity away from its node
     /// needs the two nodes of that segment, or all three nodes around (Lemma 5.9).
     #[must_use]
     pub fn of(faults: Faults) -> Self {
         const ALL: Faults = Faults::CONVEXITY_BETWEEN
+            .and(Faults::GLOBAL_CONVEXITY)
             .and(Faults::TORSION)
             .and(Faults::COPLANARITY_BETWEEN)
             .and(Faults::COPLANARITY_SPLIT);

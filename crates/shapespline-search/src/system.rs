@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use shapespline_banded::{Resolvable, Rows, SolveError};
+use shapespline_banded::{Resolvable, Rows, SolveError, solve_once};
 use shapespline_geometry::{DVec3, DataPolygon};
 
 use crate::TensionFamily;
@@ -31,6 +31,23 @@ pub trait TensionSystem: Rows + Sync {
     fn weight(&self, _node: usize) -> f64 {
         1.0
     }
+}
+
+/// The end legs of every segment, of a system whose tension stays as it is. O(N).
+///
+/// # Errors
+/// A system that f64 cannot hold.
+pub fn solve_legs<S: TensionSystem>(system: &S) -> Result<Vec<[DVec3; 2]>, SolveError> {
+    let tangents = solve_once(system)?;
+    Ok((0..system.polygon().segments()).map(|i| legs_of(system, &tangents, i)).collect())
+}
+
+#[inline]
+fn legs_of<S: TensionSystem>(system: &S, tangents: &[DVec3], segment: usize) -> [DVec3; 2] {
+    // Of closed data the last point is the first.
+    let wraps = segment + 1 == tangents.len() && system.polygon().is_closed();
+    let next = if wraps { 0 } else { segment + 1 };
+    system.legs(segment, [tangents[segment], tangents[next]])
 }
 
 /// A system with its solution, brought up to date where tension changes.
@@ -105,14 +122,7 @@ impl<S: TensionSystem> TensionFamily for SolvedFamily<S> {
 
     #[inline]
     fn end_legs(&self, segment: usize) -> [DVec3; 2] {
-        let tangents = self.solver.solution();
-        // Of closed data the last point is the first.
-        let next = if segment + 1 == tangents.len() && self.system.polygon().is_closed() {
-            0
-        } else {
-            segment + 1
-        };
-        self.system.legs(segment, [tangents[segment], tangents[next]])
+        legs_of(&self.system, self.solver.solution(), segment)
     }
 
     fn weight(&self, node: usize) -> f64 {

@@ -7,7 +7,7 @@ use shapespline_geometry::{
 };
 use shapespline_search::{
     Fit, FitError, Interpolant, SearchOptions, SolvedFamily, Step, Tension, per_point,
-    search_and_report,
+    search_and_report, solve_legs,
 };
 
 use crate::system::MannisSystem;
@@ -74,8 +74,8 @@ impl TensionSpline {
     /// `λ` outside `(0, 1]` or of a wrong length; tangents that overflow.
     pub fn new(polygon: DataPolygon, scale: TangentScale<'_>) -> Result<Self, FitError> {
         let slopes = scale.slopes(&polygon)?;
-        let family = SolvedFamily::new(MannisSystem::new(&polygon, slopes))?;
-        let (legs, system) = family.finish();
+        let system = MannisSystem::new(&polygon, slopes);
+        let legs = solve_legs(&system)?;
         let (slopes, tension) = system.into_parts();
         Self::assemble(polygon, legs, slopes, tension)
     }

@@ -50,3 +50,8 @@ pub fn helix(tangent_length: f64) -> DataPolygon {
     let boundary = Boundary::Tangents { start, end };
     DataPolygon::new(points, &Parametrization::Chordal, boundary).unwrap()
 }
+
+/// The Rust example of the project's README is run as a test.
+#[cfg(doctest)]
+#[doc = include_str!("../../../README.md")]
+struct Readme;

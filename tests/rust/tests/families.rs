@@ -420,3 +420,22 @@ fn split_coplanarity_with_uneven_spacing() {
     }
     assert!(called > 1000, "{called}");
 }
+
+#[test]
+fn global_convexity_on_request() {
+    let mut random = Random::new(101);
+    for kind in [Kind::Walk, Kind::Track, Kind::Planar] {
+        for case in 0..100 {
+            let Some(polygon) = polygon(kind, case, &mut random) else { continue };
+            let criteria = Criteria::EVERY;
+            let search = SearchOptions { criteria, ..SearchOptions::default() };
+            let handles = HandleOptions { criteria, ..HandleOptions::default() };
+            let fits = [
+                NuSpline::shape_preserving(polygon.clone(), &search).map(|f| f.report),
+                TensionSpline::shape_preserving(polygon.clone(), &search).map(|f| f.report),
+                CatmullRom::shape_preserving(polygon, &handles).map(|f| f.report),
+            ];
+            assert!(fits.iter().all(|f| f.as_ref().unwrap().ok()), "{kind:?} {case}");
+        }
+    }
+}

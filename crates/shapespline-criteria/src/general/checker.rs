@@ -1,0 +1,324 @@
+//! The checker for curves that were not made here.
+
+use glam::DVec3;
+use rayon::prelude::*;
+use shapespline_geometry::{DataPolygon, InputError, PiecewiseBezier, length, polynomial::Sign};
+
+use super::{Question, Segment, decide, measure};
+use crate::{
+    Calls, Checker, Criteria, Criterion, Faults, Notes, Record, ShapeReport, Tolerances, Undecided,
+    notes::notes,
+};
+
+/// How far from the points a curve may pass by default, over the extent of the points.
+pub const INTERPOLATION: f64 = 1e-9;
+
+/// Why a curve cannot be judged by some points.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum CurveError {
+    /// Tolerances outside their range.
+    #[error(transparent)]
+    Input(#[from] InputError),
+    /// Planar points and a spatial curve, or the reverse.
+    #[error("points have {points} coordinates, the curve has {curve}")]
+    Dimension {
+        /// Coordinates of the points.
+        points: usize,
+        /// Coordinates of the curve.
+        curve: usize,
+    },
+    /// Parameters of points where the curve is not defined.
+    #[error("parameters[{index}] = {value} lies outside the curve's domain [{start}, {end}]")]
+    Domain {
+        /// Index of the parameter.
+        index: usize,
+        /// Its value.
+        value: f64,
+        /// Where the curve begins.
+        start: f64,
+        /// Where it ends.
+        end: f64,
+    },
+    /// A point that the curve does not pass through.
+    #[error(
+        "the curve does not pass through points[{point}]: at parameter {parameter} it is \
+         {distance:e} away, more than {allowed:e}"
+    )]
+    Mismatch {
+        /// Index of the point.
+        point: usize,
+        /// Its parameter.
+        parameter: f64,
+        /// How far from it the curve passes.
+        distance: f64,
+        /// The distance allowed.
+        allowed: f64,
+    },
+    /// Pieces that do not meet.
+    #[error("the curve jumps by {distance:e} at parameter {parameter}, more than {allowed:e}")]
+    Jump {
+        /// The parameter.
+        parameter: f64,
+        /// The distance between the pieces' ends.
+        distance: f64,
+        /// The distance allowed.
+        allowed: f64,
+    },
+}
+
+/// The shape criteria of a data polygon, held against any piecewise Bézier curve through its points.
+///
+/// Segments that are one cubic take the way of [`Checker`], the others that of certified subdivision.
+#[derive(Debug, Clone)]
+pub struct CurveChecker<'a> {
+    checker: Checker<'a>,
+    curve: &'a PiecewiseBezier,
+    /// Whether each piece is the curve between two neighbouring points.
+    aligned: bool,
+}
+
+impl<'a> CurveChecker<'a> {
+    /// Makes sure that the curve passes through the points at their parameters, to a distance of
+    /// `interpolation` (see [`INTERPOLATION`]) times the extent of the points.
+    ///
+    /// # Errors
+    /// Tolerances outside their range; another dimension; parameters outside the curve's domain; a
+    /// curve that misses a point, or jumps.
+    pub fn new(
+        polygon: &'a DataPolygon,
+        curve: &'a PiecewiseBezier,
+        criteria: Criteria,
+        tolerances: Tolerances,
+        interpolation: f64,
+    ) -> Result<Self, CurveError> {
+        if !(interpolation >= 0.0) {
+            let (argument, value) = ("interpolation", interpolation);
+            return Err(InputError::Scalar { argument, value, allowed: "non-negative" }.into());
+        }
+        let dimensions = [polygon.dimension().len(), curve.dimension().len()];
+        if dimensions[0] != dimensions[1] {
+            let [points, curve] = dimensions;
+            return Err(CurveError::Dimension { points, curve });
+        }
+        let checker = Checker::new(polygon, criteria, tolerances.validate()?);
+        let aligned = is_aligned(polygon.parameters(), curve.breaks())?;
+        let checked = Self { checker, curve, aligned };
+        checked.check_position(interpolation)?;
+        Ok(checked)
+    }
+
+    /// The criteria's own checker: what the polygon calls for.
+    #[must_use]
+    pub fn checker(&self) -> &Checker<'a> {
+        &self.checker
+    }
+
+    /// The report. Cost O(N); memory follows the violations and the open questions.
+    #[must_use]
+    pub fn report(&self) -> ShapeReport {
+        let of = |i: usize| (i, self.check_segment(i));
+        let found: Vec<(usize, Found)> = (0..self.checker.calls().len())
+            .into_par_iter()
+            .with_min_len(64)
+            .map(of)
+            .filter(|(_, found)| !found.records.is_empty() || !found.undecided.is_empty())
+            .collect();
+        let mut report = self.checker.blank_report();
+        for (_, Found { records, undecided }) in found {
+            for record in &records {
+                report.counts[record.criterion as usize].violated += 1;
+            }
+            report.violations.extend(records);
+            report.undecided.extend(undecided);
+        }
+        report
+    }
+
+    /// The record of one criterion on a segment. Where the question stays open the record says
+    /// unsatisfied with margin zero, and [`CurveChecker::undecided`] has the interval.
+    #[must_use]
+    pub fn record(&self, segment: usize, criterion: Criterion) -> Record {
+        if let Some(legs) = self.legs(segment) {
+            return self.checker.record(segment, legs, criterion);
+        }
+        let mut record = Record {
+            segment,
+            criterion,
+            applicable: false,
+            satisfied: true,
+            margin: f64::NAN,
+            location: f64::NAN,
+        };
+        let Some(question) = self.question(segment, criterion) else { return record };
+        let pieces = self.segment(segment);
+        let sign = decide(&pieces, &question);
+        let measured = measure(&pieces, &question);
+        record.applicable = true;
+        record.satisfied = sign == Sign::Positive;
+        // The proof decides on which side of zero the margin lies.
+        let (margin, at) = match sign {
+            Sign::Positive => (measured.value.max(f64::MIN_POSITIVE), measured.at),
+            Sign::Fails { at } if measured.value > 0.0 => (0.0, at),
+            Sign::Fails { .. } => (measured.value, measured.at),
+            Sign::Undecided { from, to } => (0.0, 0.5 * (from + to)),
+        };
+        (record.margin, record.location) = (margin, self.parameter(segment, at));
+        record
+    }
+
+    /// What stays open of a criterion on a segment.
+    #[must_use]
+    pub fn undecided(&self, segment: usize, criterion: Criterion) -> Option<Undecided> {
+        if self.legs(segment).is_some() {
+            return None;
+        }
+        let question = self.question(segment, criterion)?;
+        match decide(&self.segment(segment), &question) {
+            Sign::Undecided { from, to } => {
+                let interval = [self.parameter(segment, from), self.parameter(segment, to)];
+                Some(Undecided { segment, criterion, interval })
+            }
+            _ => None,
+        }
+    }
+
+    /// What the paper says of nodes and of oscillation, as information.
+    #[must_use]
+    pub fn notes(&self) -> Notes {
+        notes(&self.checker, |i| self.segment(i))
+    }
+
+    fn check_segment(&self, i: usize) -> Found {
+        let mut found = Found::default();
+        let calls = self.checker.calls()[i];
+        if calls.is_empty() {
+            return found;
+        }
+        if let Some(legs) = self.legs(i) {
+            let faults = self.checker.faults(i, legs);
+            let failed = |c: &Criterion| faults.any(Faults::of(*c));
+            let record = |c| self.checker.record(i, legs, c);
+            found.records = Criterion::ALL.into_iter().filter(failed).map(record).collect();
+            return found;
+        }
+        let pieces = self.segment(i);
+        for criterion in calls.criteria().iter() {
+            let Some(question) = self.question(i, criterion) else { continue };
+            match decide(&pieces, &question) {
+                Sign::Positive => {}
+                Sign::Fails { .. } => found.records.push(self.record(i, criterion)),
+                Sign::Undecided { from, to } => {
+                    let interval = [self.parameter(i, from), self.parameter(i, to)];
+                    found.undecided.push(Undecided { segment: i, criterion, interval });
+                }
+            }
+        }
+        found
+    }
+
+    fn question(&self, segment: usize, criterion: Criterion) -> Option<Question> {
+        let calls = self.checker.calls()[segment];
+        let polygon = self.checker.polygon();
+        let normals = [segment, segment + 1].map(|i| polygon.binormal(i).normalize_or_zero());
+        let cones = self.checker.cones(segment);
+        calls.any(Calls::of(criterion)).then_some(Question { criterion, calls, normals, cones })
+    }
+
+    fn parameter(&self, segment: usize, local: f64) -> f64 {
+        let polygon = self.checker.polygon();
+        polygon.parameters()[segment] + local * polygon.spacing(segment)
+    }
+
+    /// End legs, where a segment is one polynomial cubic.
+    fn legs(&self, i: usize) -> Option<[DVec3; 2]> {
+        if !self.aligned || self.curve.degree() != 3 || self.curve.is_rational() {
+            return None;
+        }
+        let p = self.curve.piece(i);
+        Some([(p[1] - p[0]).truncate(), (p[3] - p[2]).truncate()])
+    }
+
+    fn segment(&self, i: usize) -> Segment {
+        let polygon = self.checker.polygon();
+        let u = polygon.parameters();
+        let origin = polygon.points()[i];
+        let parts = self.curve.between([u[i], u[i + 1]], origin);
+        Segment::new(&parts, self.curve.is_rational(), length(origin))
+    }
+
+    /// Whether the curve passes through the points and does not jump.
+    fn check_position(&self, interpolation: f64) -> Result<(), CurveError> {
+        let polygon = self.checker.polygon();
+        let (points, u) = (polygon.points(), polygon.parameters());
+        let first = points[0];
+        let (low, high) = points.iter().fold((first, first), |(l, h), p| (l.min(*p), h.max(*p)));
+        let largest = low.abs().max(high.abs()).max_element();
+        let allowed = interpolation * length(high - low) + 16.0 * f64::EPSILON * largest;
+        for i in 0..polygon.segments() {
+            let parts = self.curve.between([u[i], u[i + 1]], points[i]);
+            let at = |part: usize, last: bool| {
+                let control = &parts[part].control;
+                let p = control[if last { control.len() - 1 } else { 0 }];
+                p.truncate() / p.w
+            };
+            let miss = |point: usize, distance: f64| {
+                let parameter = u[point];
+                // Written so that a NaN fails.
+                if distance <= allowed {
+                    return Ok(());
+                }
+                Err(CurveError::Mismatch { point, parameter, distance, allowed })
+            };
+            if parts.is_empty() {
+                return miss(i, f64::NAN);
+            }
+            miss(i, length(at(0, false)))?;
+            miss(i + 1, length(at(parts.len() - 1, true) - polygon.chord(i)))?;
+            for k in 1..parts.len() {
+                let distance = length(at(k, false) - at(k - 1, true));
+                if !(distance <= allowed) {
+                    let parameter = self.parameter(i, parts[k].local[0]);
+                    return Err(CurveError::Jump { parameter, distance, allowed });
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+#[derive(Debug, Default)]
+struct Found {
+    records: Vec<Record>,
+    undecided: Vec<Undecided>,
+}
+
+/// Whether the breaks are the parameters; an error where the curve does not reach them.
+fn is_aligned(u: &[f64], breaks: &[f64]) -> Result<bool, CurveError> {
+    let [start, end] = [breaks[0], breaks[breaks.len() - 1]];
+    let n = u.len() - 1;
+    let close = |a: f64, b: f64, h: f64| (a - b).abs() <= 1e-12 * h;
+    let (h0, hn) = (u[1] - u[0], u[n] - u[n - 1]);
+    for (index, reaches) in
+        [(0, u[0] >= start || close(u[0], start, h0)), (n, u[n] <= end || close(u[n], end, hn))]
+    {
+        if !reaches {
+            return Err(CurveError::Domain { index, value: u[index], start, end });
+        }
+    }
+    let spacing = |i: usize| u[(i + 1).min(n)] - u[i.min(n - 1)];
+    Ok(breaks.len() == u.len() && (0..=n).all(|i| close(u[i], breaks[i], spacing(i))))
+}
+
+/// The report on any piecewise Bézier curve through the points of a polygon.
+///
+/// # Errors
+/// As [`CurveChecker::new`].
+pub fn check_curve(
+    polygon: &DataPolygon,
+    curve: &PiecewiseBezier,
+    criteria: Criteria,
+    tolerances: Tolerances,
+) -> Result<ShapeReport, CurveError> {
+    Ok(CurveChecker::new(polygon, curve, criteria, tolerances, INTERPOLATION)?.report())
+}

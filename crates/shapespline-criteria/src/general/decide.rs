@@ -1,0 +1,170 @@
+//! The verdicts on a segment of any degree.
+
+use glam::DVec3;
+use shapespline_geometry::polynomial::{Polynomial, Sign};
+
+use super::{Piece, Segment, swing::swings_once};
+use crate::{
+    Calls, Criterion,
+    faults::{Cones, LINE_PART},
+};
+
+/// What a segment is asked, and by which vectors of the polygon.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Question {
+    pub(crate) criterion: Criterion,
+    pub(crate) calls: Calls,
+    /// Unit binormal vectors at the two nodes.
+    pub(crate) normals: [DVec3; 2],
+    pub(crate) cones: Cones,
+}
+
+impl Question {
+    /// The sign that the torsion has to have.
+    pub(crate) fn torsion_sign(&self) -> f64 {
+        if self.calls.any(Calls::RIGHT_TORSION) { 1.0 } else { -1.0 }
+    }
+
+    /// The parts of the segment on which a cone condition is asked, each with its cone: axis and
+    /// sine.
+    pub(crate) fn cone_parts(&self) -> Vec<([f64; 2], DVec3, f64)> {
+        let mut parts = Vec::new();
+        if self.criterion == Criterion::Coplanarity {
+            let (epsilon, normals) = self.cones.plane;
+            for normal in normals {
+                if self.calls.any(Calls::COPLANARITY) {
+                    parts.push(([0.0, 1.0], normal, epsilon));
+                } else {
+                    let [left, right] = self.cones.parts;
+                    parts.push(([0.0, left], normal, epsilon));
+                    parts.push(([right, 1.0], normal, epsilon));
+                }
+            }
+        } else {
+            let (epsilon, [start, end]) = self.cones.line;
+            if self.calls.any(Calls::LINE_AT_START) {
+                parts.push(([0.0, LINE_PART], start, epsilon));
+            }
+            if self.calls.any(Calls::LINE_AT_END) {
+                parts.push(([1.0 - LINE_PART, 1.0], end, epsilon));
+            }
+        }
+        parts
+    }
+}
+
+/// The verdict, with parameters local to the segment.
+pub(crate) fn decide(segment: &Segment, question: &Question) -> Sign {
+    let [p, q] = question.normals;
+    match question.criterion {
+        Criterion::Convexity => turns(segment, p).and(turns(segment, q)),
+        Criterion::GlobalConvexity => [p, q].into_iter().fold(Sign::Positive, |known, n| {
+            known.and(turns(segment, n)).and(sees_its_start(segment, n))
+        }),
+        Criterion::Inflection => swings_once(segment, [p, q]),
+        Criterion::Torsion => {
+            let sign = question.torsion_sign();
+            each(segment, |piece| piece.determinant().map(1.0, |d| sign * d).sign())
+        }
+        Criterion::Coplanarity => cones(segment, question, Piece::omega),
+        Criterion::Collinearity => cones(segment, question, Piece::tangent),
+    }
+}
+
+fn each(segment: &Segment, sign: impl Fn(&Piece) -> Sign) -> Sign {
+    segment.pieces.iter().fold(Sign::Positive, |known, piece| match known {
+        Sign::Fails { .. } => known,
+        _ => known.and(sign(piece).on(piece.local[0], piece.local[1])),
+    })
+}
+
+/// `ω·n > 0`, and no corner between pieces that turns the other way.
+pub(crate) fn turns(segment: &Segment, n: DVec3) -> Sign {
+    let smooth = each(segment, |piece| piece.omega().map(1.0, |w| w.dot(n)).sign());
+    corners(segment).fold(smooth, |known, (at, turn, error)| {
+        if turn.dot(n) < -error { known.and(Sign::Fails { at }) } else { known }
+    })
+}
+
+/// The turns `u⁻ × u⁺` of unit tangents where pieces meet, with the place and the error.
+pub(crate) fn corners(segment: &Segment) -> impl Iterator<Item = (f64, DVec3, f64)> {
+    segment.pieces.windows(2).map(|pair| {
+        let (before, after) = (pair[0].tangent(), pair[1].tangent());
+        let (u, v) = (before.ends()[1], after.ends()[0]);
+        let error = before.error() / u.length() + after.error() / v.length();
+        let turn = u.normalize_or_zero().cross(v.normalize_or_zero());
+        // Pieces that were meant to be smooth meet only to the rounding of their making.
+        (pair[1].local[0], turn, error.max(1e-12))
+    })
+}
+
+/// `((γ(t) − γ(0))×γ'(t))·n > 0` and `(γ'(0)×(γ(t) − γ(0)))·n > 0` for `t > 0`. On the first piece
+/// both have a double root at `t = 0`, which is divided out.
+fn sees_its_start(segment: &Segment, n: DVec3) -> Sign {
+    let Some(first) = segment.pieces.first() else { return Sign::Positive };
+    let start = first.velocity().ends()[0];
+    each(segment, |piece| {
+        let (a, velocity) = (piece.position(), piece.velocity());
+        let inner = a.product(velocity, |a, v| a.cross(v).dot(n));
+        let outer = a.map(start.length(), |a| start.cross(a).dot(n));
+        if piece.local[0] > 0.0 {
+            inner.sign().and(outer.sign())
+        } else {
+            let reduced = |p: &Polynomial<f64>| p.divided_by_t().divided_by_t().sign();
+            reduced(&inner).and(reduced(&outer))
+        }
+    })
+}
+
+fn cones(
+    segment: &Segment,
+    question: &Question,
+    vector: impl Fn(&Piece) -> Polynomial<DVec3>,
+) -> Sign {
+    let within = |([from, to], axis, epsilon): ([f64; 2], DVec3, f64)| {
+        let part = segment.part(from, to);
+        match side(&part, &vector, axis) {
+            Err(at) => Sign::Fails { at },
+            Ok(side) => each(&part, |piece| {
+                let v = vector(piece);
+                inside(&v, &v.map(1.0, |v| side * v.dot(axis)), axis, epsilon)
+            }),
+        }
+    };
+    question.cone_parts().into_iter().map(within).fold(Sign::Positive, Sign::and)
+}
+
+/// On which side of the plane of right angles to the axis the ends of the pieces are, or where they
+/// change sides.
+fn side(
+    part: &Segment,
+    vector: &impl Fn(&Piece) -> Polynomial<DVec3>,
+    axis: DVec3,
+) -> Result<f64, f64> {
+    let mut side = 0.0;
+    for piece in &part.pieces {
+        let along = vector(piece).map(1.0, |v| v.dot(axis));
+        for (x, at) in along.ends().into_iter().zip(piece.local) {
+            if x.abs() > along.error() {
+                if side * x < 0.0 {
+                    return Err(at);
+                }
+                side = x.signum();
+            }
+        }
+    }
+    Ok(if side == 0.0 { 1.0 } else { side })
+}
+
+/// Whether `v` stays inside the cone: on its side of the axis, and `ε²(v·n)² > (1−ε²)‖v×n‖²`.
+fn inside(v: &Polynomial<DVec3>, along: &Polynomial<f64>, axis: DVec3, epsilon: f64) -> Sign {
+    match along.sign() {
+        Sign::Positive => {}
+        other => return other,
+    }
+    let across = v.map(1.0, |v| v.cross(axis));
+    let square = along.product(along, |a, b| a * b);
+    let outside = across.product(&across, DVec3::dot);
+    let factor = (1.0 - epsilon) * (1.0 + epsilon);
+    square.map(epsilon * epsilon, |x| epsilon * epsilon * x).plus(&outside, -factor).sign()
+}

@@ -1,0 +1,21 @@
+//! Curves of any degree, polynomial or rational, with any number of pieces between two points.
+//!
+//! The criteria are the same as for cubics. With a curve `A/w` in homogeneous form, `w > 0`,
+//!
+//! - `γ' = (A'w − Aw')/w²`,
+//! - `γ'×γ'' = (w A'×A'' − w' A×A'' + w'' A×A')/w³`,
+//! - `det[γ', γ'', γ'''] = (w[A'A''A'''] − w'[AA''A'''] + w''[AA'A'''] − w'''[AA'A''])/w⁴`,
+//!
+//! so every sign question is one on a polynomial, decided by certified subdivision of its Bernstein
+//! form ([`shapespline_geometry::polynomial`]); what rounding leaves open is reported as undecided.
+
+mod checker;
+mod decide;
+mod measure;
+mod segment;
+mod swing;
+
+pub use checker::{CurveChecker, CurveError, INTERPOLATION, check_curve};
+pub(crate) use decide::{Question, corners, decide};
+pub(crate) use measure::{measure, minimum};
+pub(crate) use segment::{Piece, Segment};

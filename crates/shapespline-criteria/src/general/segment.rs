@@ -1,0 +1,200 @@
+//! The curve between two data points as polynomials.
+
+use glam::{DVec3, DVec4};
+use shapespline_geometry::{BezierPart, polynomial::Polynomial};
+
+/// A piece of the curve between two data points: `A/w` on `[0, 1]`, where `[0, 1]` is the part
+/// `local` of the data segment.
+#[derive(Debug, Clone)]
+pub(crate) struct Piece {
+    pub(crate) local: [f64; 2],
+    /// `A, A', A'', A'''`.
+    a: [Polynomial<DVec3>; 4],
+    /// `w, w', w'', w'''`, of a rational curve.
+    w: Option<[Polynomial<f64>; 4]>,
+}
+
+/// The curve between two data points, moved so that it begins at zero, and brought to a size near
+/// one: signs do not change by it.
+#[derive(Debug, Clone)]
+pub(crate) struct Segment {
+    pub(crate) pieces: Vec<Piece>,
+}
+
+impl Segment {
+    /// From the parts of a piecewise Bézier curve; `offset` is the size of what was subtracted from
+    /// its control points, whose rounding they carry.
+    pub(crate) fn new(parts: &[BezierPart], rational: bool, offset: f64) -> Self {
+        let start = parts.first().and_then(|p| p.control.first()).copied();
+        let start = start.map_or(DVec3::ZERO, |p| p.truncate() / p.w);
+        let all = || parts.iter().flat_map(|p| p.control.iter());
+        let weight = all().fold(0.0f64, |m, p| m.max(p.w));
+        let moved = |p: &DVec4| (p.truncate() - start * p.w) / weight;
+        let size = all().fold(0.0f64, |m, p| m.max(moved(p).abs().max_element()));
+        let size = if size > 0.0 { size } else { 1.0 };
+        let piece = |part: &BezierPart| {
+            let points: Vec<DVec3> = part.control.iter().map(|p| moved(p) / size).collect();
+            let error = f64::EPSILON * (4.0 + 2.0 * offset / size);
+            let weights = || part.control.iter().map(|p| p.w / weight).collect();
+            Piece {
+                local: part.local,
+                a: derivatives(Polynomial::new(points, error)),
+                w: rational.then(|| derivatives(Polynomial::new(weights(), 4.0 * f64::EPSILON))),
+            }
+        };
+        Self { pieces: parts.iter().map(piece).collect() }
+    }
+
+    /// A cubic of given end legs.
+    pub(crate) fn cubic([a, c]: [DVec3; 2], chord: DVec3) -> Self {
+        let control = [DVec3::ZERO, a, chord - c, chord].map(|p| p.extend(1.0)).to_vec();
+        Self::new(&[BezierPart { control, local: [0.0, 1.0] }], false, 0.0)
+    }
+
+    /// Two segments as one, the second begun where the first ends; the local parameter 0.5 is the
+    /// node between them.
+    pub(crate) fn joined(first: &Self, second: &Self) -> Self {
+        let moved = |piece: &Piece, from: f64| Piece {
+            local: piece.local.map(|t| from + 0.5 * t),
+            ..piece.clone()
+        };
+        let pieces = first.pieces.iter().map(|p| moved(p, 0.0));
+        Self { pieces: pieces.chain(second.pieces.iter().map(|p| moved(p, 0.5))).collect() }
+    }
+
+    /// The pieces in a part of the segment, cut to it.
+    pub(crate) fn part(&self, from: f64, to: f64) -> Self {
+        let cut = |piece: &Piece| {
+            let [start, end] = piece.local;
+            let (lo, hi) = (from.max(start), to.min(end));
+            (hi > lo)
+                .then(|| piece.part((lo - start) / (end - start), (hi - start) / (end - start)))
+        };
+        Self { pieces: self.pieces.iter().filter_map(cut).collect() }
+    }
+}
+
+fn derivatives<T: shapespline_geometry::polynomial::Coefficient>(
+    p: Polynomial<T>,
+) -> [Polynomial<T>; 4] {
+    let first = p.derivative();
+    let second = first.derivative();
+    let third = second.derivative();
+    [p, first, second, third]
+}
+
+impl Piece {
+    fn part(&self, from: f64, to: f64) -> Self {
+        let [start, end] = self.local;
+        let outer = |t: f64| start + t * (end - start);
+        Self {
+            local: [outer(from), outer(to)],
+            a: derivatives(self.a[0].part(from, to)),
+            w: self.w.as_ref().map(|w| derivatives(w[0].part(from, to))),
+        }
+    }
+
+    /// `A`: positive multiples of the position seen from the segment's start.
+    pub(crate) fn position(&self) -> &Polynomial<DVec3> {
+        &self.a[0]
+    }
+
+    /// `A'`.
+    pub(crate) fn velocity(&self) -> &Polynomial<DVec3> {
+        &self.a[1]
+    }
+
+    /// Positive multiples of the tangent.
+    pub(crate) fn tangent(&self) -> Polynomial<DVec3> {
+        match &self.w {
+            None => self.a[1].clone(),
+            Some(w) => {
+                let kept = self.a[1].product(&w[0], |a, w| a * w);
+                kept.plus(&self.a[0].product(&w[1], |a, w| a * w), -1.0)
+            }
+        }
+    }
+
+    /// Positive multiples of `ω = γ' × γ''`.
+    pub(crate) fn omega(&self) -> Polynomial<DVec3> {
+        let cross = |i: usize, j: usize| self.a[i].product(&self.a[j], DVec3::cross);
+        match &self.w {
+            None => cross(1, 2),
+            Some(w) => {
+                let times = |v: Polynomial<DVec3>, k: usize| v.product(&w[k], |v, w| v * w);
+                let first = times(cross(1, 2), 0).plus(&times(cross(0, 2), 1), -1.0);
+                first.plus(&times(cross(0, 1), 2), 1.0)
+            }
+        }
+    }
+
+    /// Positive multiples of `det[γ', γ'', γ''']`.
+    pub(crate) fn determinant(&self) -> Polynomial<f64> {
+        let det = |i: usize, j: usize, k: usize| {
+            self.a[i].product(&self.a[j], DVec3::cross).product(&self.a[k], DVec3::dot)
+        };
+        match &self.w {
+            None => det(1, 2, 3),
+            Some(w) => {
+                let times = |p: Polynomial<f64>, k: usize| p.product(&w[k], |p, w| p * w);
+                let first = times(det(1, 2, 3), 0).plus(&times(det(0, 2, 3), 1), -1.0);
+                let second = times(det(0, 1, 3), 2).plus(&times(det(0, 1, 2), 3), -1.0);
+                first.plus(&second, 1.0)
+            }
+        }
+    }
+
+    /// `γ − γ(0), γ', γ'', γ'''` at `t`, derivatives with respect to the segment's local parameter.
+    pub(crate) fn jet(&self, t: f64) -> [DVec3; 4] {
+        let mut g = [0, 1, 2, 3].map(|k| self.a[k].value(t));
+        if let Some(w) = &self.w {
+            let w = [0, 1, 2, 3].map(|k| w[k].value(t));
+            // (wγ)^(k) = A^(k), solved for γ^(k).
+            g[0] /= w[0];
+            g[1] = (g[1] - g[0] * w[1]) / w[0];
+            g[2] = (g[2] - g[1] * (2.0 * w[1]) - g[0] * w[2]) / w[0];
+            g[3] = (g[3] - g[2] * (3.0 * w[1]) - g[1] * (3.0 * w[2]) - g[0] * w[3]) / w[0];
+        }
+        let rate = 1.0 / (self.local[1] - self.local[0]);
+        [g[0], g[1] * rate, g[2] * (rate * rate), g[3] * (rate * rate * rate)]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A rational quintic: the polynomials have the signs and ratios of the derivatives.
+    #[test]
+    fn the_numerators_are_multiples_of_the_derivatives() {
+        let control: Vec<DVec4> = (0..6)
+            .map(f64::from)
+            .map(|x| {
+                let w = 1.0 + 0.5 * (1.9 * x).sin();
+                (DVec3::new((1.3 * x).cos(), (2.1 * x).sin(), 0.4 * x) * w).extend(w)
+            })
+            .collect();
+        let part = BezierPart { control, local: [0.25, 1.0] };
+        let segment = Segment::new(&[part], true, 0.0);
+        let piece = &segment.pieces[0];
+        for k in 0..=20 {
+            let t = 0.05 * f64::from(k);
+            let [position, d1, d2, d3] = piece.jet(t);
+            let along = |v: DVec3, w: DVec3| (v.normalize() - w.normalize()).length();
+            assert!(along(piece.tangent().value(t), d1) < 1e-11);
+            assert!(along(piece.omega().value(t), d1.cross(d2)) < 1e-9);
+            let det = d1.cross(d2).dot(d3);
+            assert!(piece.determinant().value(t) * det > 0.0);
+            if k > 0 {
+                assert!(along(piece.position().value(t), position) < 1e-12);
+            }
+            // Derivatives by differences of the one before.
+            let h = 1e-5;
+            for i in 0..3 {
+                let difference = (piece.jet(t + h)[i] - piece.jet(t - h)[i]) / (2.0 * h) / 0.75;
+                let exact = piece.jet(t)[i + 1];
+                assert!((difference - exact).length() < 1e-5 * (1.0 + exact.length()), "{i}");
+            }
+        }
+    }
+}

@@ -1,0 +1,33 @@
+//! Global convexity of a cubic segment (paper 002, Definition 3.16), in closed form.
+//!
+//! Seen along `n`, with `A, B, C = (a×b)·n, (b×c)·n, (a×c)·n`, the conditions beyond `ω·n > 0` are
+//! `((γ(t) − γ(0))×γ'(t))·n = 3t²·[3A, A+C, B+C]` and `(γ'(0)×(γ(t) − γ(0)))·n = 3t²·[3A, A+C]` in
+//! Bernstein coefficients. With `A, B > 0` from `ω·n > 0`, the second asks `A + C > 0` (its value at
+//! the end), the first `B + C > 0` (likewise), and with these all coefficients of both are positive.
+//! So the polynomials of the specification (E6) come down to two signs at the ends:
+//! `A + C = (a×L)·n > 0` and `B + C = (L×c)·n > 0`. Theorem 13.4 asks something else: it accepts
+//! polygons of either orientation, and ones that turn by more than π whatever the curve does.
+
+use shapespline_geometry::bernstein::quadratic_is_positive;
+
+use crate::faults::Situation;
+
+/// `(a×L)·n` and `(L×c)·n` for both binormal vectors `n`.
+pub(crate) fn chord_turns(s: &Situation) -> [[f64; 2]; 2] {
+    let [start, end] = [s.a.cross(s.chord), s.chord.cross(s.c)];
+    [s.p, s.q].map(|n| [start.dot(n), end.dot(n)])
+}
+
+/// Whether the segment is globally convex, seen along both binormal vectors.
+pub(crate) fn is_globally_convex(s: &Situation) -> bool {
+    let [[a0, b0], [a1, b1]] = chord_turns(s);
+    // Written so that a NaN fails.
+    a0 > 0.0
+        && b0 > 0.0
+        && a1 > 0.0
+        && b1 > 0.0
+        && [s.p, s.q].into_iter().all(|n| {
+            let [alpha, gamma, beta] = s.omega_along(n);
+            quadratic_is_positive(alpha, gamma, beta)
+        })
+}

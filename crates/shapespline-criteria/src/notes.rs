@@ -1,0 +1,301 @@
+//! What paper 002 says beyond the criteria, as information: it does not enter a verdict.
+//!
+//! - *Compatibility* (12.1): the tangent at a node, seen along `P_i`, lies strictly between the two
+//!   chords: `l_{i−1}×T` and `T×l_i` both turn as `P_i` does. (Printed as a product that is negative,
+//!   which a tangent of the opposite direction passes too.)
+//! - *Torsion at nodes* (Definition 9.2, item 2): where `Γ_{i−1}Γ_i > 0`, torsion has that sign on both
+//!   sides of the node. Where `Γ_{i−1}Γ_i < 0` it has to vanish or to jump there if both segments are
+//!   to keep theirs (Theorem 12.1).
+//! - *Neighbourhood of three points on a line* (Definition 8.2, with E8): with the middle point left
+//!   out, the two segments together keep the convexity, or the inflection, of the points around, and
+//!   the nodes beside are compatible. A curve through the middle point of a convex neighbourhood can
+//!   meet this with equality only, by being straight; the margin says how far it bends the other way.
+//! - *Oscillation* (section 10): how often the curve crosses the plane of a coplanar quadruple between
+//!   two points, beside the least that its end tangents allow: none where it leaves and arrives on
+//!   the same side, one where on opposite sides. A cubic always has the least.
+
+use glam::DVec3;
+use shapespline_geometry::{Boundary, polynomial::Sign};
+
+use crate::{
+    Calls, Checker, Criterion,
+    calls::plane_normal,
+    faults::Cones,
+    general::{Question, Segment, decide, measure, minimum},
+    margin::Margin,
+};
+
+/// A condition at a node.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum NodeCondition {
+    /// The tangent lies between the chords (12.1).
+    Compatibility,
+    /// Torsion of the polygon's sign on both sides of the node (Definition 9.2, item 2).
+    SameTorsion,
+    /// Torsion that vanishes or jumps where the polygon's changes sign (Theorem 12.1).
+    TorsionChange,
+    /// Three points on a line between points that turn the same way (Definition 8.2).
+    ConvexNeighbourhood,
+    /// Three points on a line between points that turn opposite ways (Definition 8.2).
+    InflectionNeighbourhood,
+}
+
+impl NodeCondition {
+    /// The name users write.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Compatibility => "compatibility",
+            Self::SameTorsion => "same-torsion",
+            Self::TorsionChange => "torsion-change",
+            Self::ConvexNeighbourhood => "convex-neighbourhood",
+            Self::InflectionNeighbourhood => "inflection-neighbourhood",
+        }
+    }
+}
+
+/// One condition at one node to which it applies.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct NodeRecord {
+    /// Index of the node.
+    pub node: usize,
+    /// The condition.
+    pub condition: NodeCondition,
+    /// Whether the curve meets it.
+    pub satisfied: bool,
+    /// Signed, scale-free distance from failure.
+    pub margin: f64,
+    /// Parameter where the margin is smallest.
+    pub location: f64,
+}
+
+/// How a segment moves about the plane of its four points.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Oscillation {
+    /// Index of the segment, which calls for coplanarity.
+    pub segment: usize,
+    /// How often it crosses the plane between its points.
+    pub crossings: usize,
+    /// The least crossings that its end tangents allow.
+    pub least: usize,
+    /// Whether it has no more than the least.
+    pub satisfied: bool,
+    /// Its greatest distance from the plane over the length of the chord.
+    pub amplitude: f64,
+    /// The parameter of that distance.
+    pub location: f64,
+}
+
+/// What the paper says beyond the criteria.
+#[derive(Debug, Clone, PartialEq, Default, serde::Serialize, serde::Deserialize)]
+pub struct Notes {
+    /// Conditions at the nodes to which they apply, ascending.
+    pub nodes: Vec<NodeRecord>,
+    /// Oscillations of the segments that call for coplanarity, ascending.
+    pub oscillations: Vec<Oscillation>,
+}
+
+impl Checker<'_> {
+    /// What the paper says of nodes and of oscillation, as information, given end legs. Cost and
+    /// memory O(N), much slower than a check.
+    pub fn notes<L>(&self, legs: L) -> Notes
+    where
+        L: Fn(usize) -> [DVec3; 2],
+    {
+        notes(self, |i| Segment::cubic(legs(i), self.polygon().chord(i)))
+    }
+}
+
+pub(crate) fn notes(checker: &Checker<'_>, segment: impl Fn(usize) -> Segment) -> Notes {
+    let polygon = checker.polygon();
+    let n = polygon.segments();
+    let mut notes = Notes::default();
+    // Closed data: the last node is the first.
+    let nodes = if polygon.is_closed() { 0..n } else { 1..n };
+    for node in nodes {
+        let sides = [segment((node + n - 1) % n), segment(node)];
+        let around = Around { checker, node, sides };
+        notes.nodes.extend(around.compatibility(node, 0..2));
+        notes.nodes.extend(around.torsion());
+        notes.nodes.extend(around.neighbourhood(&segment));
+    }
+    let calls = Calls::of_polygon(polygon, &checker.tolerances());
+    let coplanar = Calls::of(Criterion::Coplanarity);
+    for i in (0..n).filter(|&i| calls[i].any(coplanar)) {
+        notes.oscillations.push(oscillation(checker, i, &segment(i)));
+    }
+    notes
+}
+
+/// A node and the segments that meet there.
+struct Around<'a, 'p> {
+    checker: &'a Checker<'p>,
+    node: usize,
+    sides: [Segment; 2],
+}
+
+impl Around<'_, '_> {
+    fn record(&self, condition: NodeCondition, satisfied: bool, margin: Margin) -> NodeRecord {
+        NodeRecord {
+            node: self.node,
+            condition,
+            satisfied,
+            margin: margin.value,
+            location: margin.at,
+        }
+    }
+
+    fn u(&self, node: usize) -> f64 {
+        self.checker.polygon().parameters()[node]
+    }
+
+    /// (12.1), with the tangents on both sides of the node.
+    fn compatibility(&self, node: usize, sides: std::ops::Range<usize>) -> Option<NodeRecord> {
+        let polygon = self.checker.polygon();
+        let p = polygon.binormal(node);
+        if p.length() <= self.checker.tolerances().zero {
+            return None;
+        }
+        let (p, [before, after]) = (p.normalize_or_zero(), polygon.directions_at(node));
+        let value = sides.fold(f64::INFINITY, |least, side| {
+            let t = self.tangent(side);
+            least.min(before.cross(t).dot(p)).min(t.cross(after).dot(p))
+        });
+        let margin = Margin { value, at: self.u(node) };
+        Some(self.record(NodeCondition::Compatibility, value > 0.0, margin))
+    }
+
+    /// Unit tangent at the node, on a side.
+    fn tangent(&self, side: usize) -> DVec3 {
+        end_jet(&self.sides[side], side == 0)[1].normalize_or_zero()
+    }
+
+    fn torsion(&self) -> Option<NodeRecord> {
+        let polygon = self.checker.polygon();
+        let n = polygon.segments();
+        let zero = self.checker.tolerances().zero;
+        let sign = |segment: usize| {
+            let gamma = polygon.gamma(segment);
+            if gamma.abs() > zero { gamma.signum() } else { 0.0 }
+        };
+        let signs = [sign((self.node + n - 1) % n), sign(self.node)];
+        if signs[0] * signs[1] == 0.0 {
+            return None;
+        }
+        let value = [0, 1].into_iter().fold(f64::INFINITY, |least, side| {
+            let [_, d1, d2, d3] = end_jet(&self.sides[side], side == 0);
+            let size = d1.length() * d2.length() * d3.length();
+            let value = if size > 0.0 { d1.cross(d2).dot(d3) / size } else { 0.0 };
+            least.min(signs[side] * value)
+        });
+        let margin = Margin { value, at: self.u(self.node) };
+        Some(if signs[0] == signs[1] {
+            self.record(NodeCondition::SameTorsion, value > 0.0, margin)
+        } else {
+            // Zero is one of the two ways out.
+            self.record(NodeCondition::TorsionChange, value >= 0.0, margin)
+        })
+    }
+
+    /// Definition 8.2: the segments `i−1` and `i` together, with node `i` left out.
+    fn neighbourhood(&self, segment: &impl Fn(usize) -> Segment) -> Option<NodeRecord> {
+        let polygon = self.checker.polygon();
+        let (n, node, zero) = (polygon.segments(), self.node, self.checker.tolerances().zero);
+        let [l0, l1] = polygon.directions_at(node);
+        if polygon.binormal(node).length() > zero || l0.dot(l1) <= 0.0 {
+            return None;
+        }
+        let (before, after) = ((node + n - 1) % n, (node + 1) % n);
+        let end = if after == 0 && !polygon.is_closed() { n } else { after };
+        if polygon.boundary() == Boundary::ZeroCurvature && (before == 0 || end == n) {
+            return None;
+        }
+        let [p, q] = [before, end].map(|i| polygon.binormal(i));
+        if p.length() <= zero || q.length() <= zero {
+            return None;
+        }
+        let normals = [p.normalize_or_zero(), q.normalize_or_zero()];
+        let joined = Segment::joined(&self.sides[0], &self.sides[1]);
+        let inflects = normals[0].dot(normals[1]) < -zero;
+        let criterion = if inflects { Criterion::Inflection } else { Criterion::Convexity };
+        let (calls, cones) = (Calls::of(criterion), Cones::none());
+        let question = Question { criterion, calls, normals, cones };
+        let mut margin = measure(&joined, &question);
+        let keeps = if inflects {
+            decide(&joined, &question) == Sign::Positive
+        } else {
+            // Equality is all that a curve through the node can reach.
+            margin.value >= -zero
+        };
+        // Local parameter 0.5 is the node.
+        let (u, s) = (self.u(before), margin.at);
+        let h = [polygon.spacing(before), polygon.spacing(node % n)];
+        margin.at =
+            if s < 0.5 { u + 2.0 * s * h[0] } else { self.u(node) + (2.0 * s - 1.0) * h[1] };
+
+        // The nodes beside; beyond an open end there is no segment, and one side is all there is.
+        let beside = |at: usize| {
+            let closed = polygon.is_closed();
+            let left = if at > 0 { Some(at - 1) } else { closed.then_some(n - 1) };
+            let right = if at < n { Some(at) } else { closed.then_some(0) };
+            let present = usize::from(left.is_none())..1 + usize::from(right.is_some());
+            let sides = [left, right].map(|i| segment(i.unwrap_or(before)));
+            Around { checker: self.checker, node: at, sides }.compatibility(at, present)
+        };
+        let mut satisfied = keeps;
+        for compatible in [beside(before), beside(end)].into_iter().flatten() {
+            satisfied &= compatible.satisfied;
+            margin = margin.least(Margin { value: compatible.margin, at: compatible.location });
+        }
+        let condition = if inflects {
+            NodeCondition::InflectionNeighbourhood
+        } else {
+            NodeCondition::ConvexNeighbourhood
+        };
+        Some(self.record(condition, satisfied, margin))
+    }
+}
+
+/// The jet at the end of a segment, or at its start.
+fn end_jet(segment: &Segment, end: bool) -> [DVec3; 4] {
+    let piece = if end { segment.pieces.last() } else { segment.pieces.first() };
+    piece.map_or([DVec3::NAN; 4], |piece| piece.jet(if end { 1.0 } else { 0.0 }))
+}
+
+fn oscillation(checker: &Checker<'_>, i: usize, segment: &Segment) -> Oscillation {
+    let polygon = checker.polygon();
+    let normal = plane_normal(polygon.binormal(i), polygon.binormal(i + 1));
+    let chord = end_jet(segment, true)[0].length();
+    let far = minimum(segment, [0.0, 1.0], |jet| -jet.d[0].dot(normal).abs());
+    let amplitude = -far.value / chord;
+    // Within the tolerance of the plane nothing crosses it.
+    let zero = checker.tolerances().zero;
+    let (mut crossings, mut last) = (0, 0.0f64);
+    for piece in &segment.pieces {
+        let distance = piece.position().map(1.0, |a| a.dot(normal));
+        let distance = shapespline_geometry::polynomial::Polynomial::new(
+            distance.coefficients().to_vec(),
+            distance.error().max(zero * chord),
+        );
+        for sign in distance.signs().0 {
+            let sign = if sign { 1.0 } else { -1.0 };
+            crossings += usize::from(last * sign < 0.0);
+            last = sign;
+        }
+    }
+    let side = |end: bool| {
+        let along = end_jet(segment, end)[1].normalize_or_zero().dot(normal);
+        if along.abs() <= zero { 0.0 } else { along }
+    };
+    // Left upwards and arrived at upwards: there is a crossing between.
+    let least = usize::from(side(false) * side(true) > 0.0);
+    Oscillation {
+        segment: i,
+        crossings,
+        least,
+        satisfied: crossings <= least,
+        amplitude,
+        location: polygon.parameters()[i] + far.at * polygon.spacing(i),
+    }
+}

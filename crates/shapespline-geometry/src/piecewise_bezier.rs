@@ -1,0 +1,292 @@
+//! Piecewise Bézier curves of any degree, polynomial or rational: the form in which curves that were
+//! not made here are taken in.
+
+use glam::{DVec3, DVec4};
+
+use crate::{
+    Dimension, InputError, PiecewiseCubic,
+    bspline::bezier_of_bspline,
+    parametrization::check_increasing,
+    polynomial::{binomials, split},
+};
+
+/// Bézier pieces of one degree between increasing breaks, held in homogeneous coordinates
+/// `(w x, w y, w z, w)`; a polynomial curve has `w = 1` throughout.
+///
+/// Each piece is run through linearly in its parameter interval. Nothing is asked of how pieces meet.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PiecewiseBezier {
+    breaks: Vec<f64>,
+    /// `degree + 1` points a piece.
+    control: Vec<DVec4>,
+    degree: usize,
+    rational: bool,
+    dimension: Dimension,
+}
+
+/// A part of a piece that lies in an interval.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BezierPart {
+    /// Homogeneous control points, relative to the origin asked for.
+    pub control: Vec<DVec4>,
+    /// Where the part begins and ends, as local parameters of the interval.
+    pub local: [f64; 2],
+}
+
+/// Largest degree that is taken: binomial coefficients of products stay exact in f64.
+const MAX_DEGREE: usize = 18;
+
+impl PiecewiseBezier {
+    /// A polynomial curve from `degree + 1` control points for each interval of the breaks (SciPy's
+    /// `BPoly` in two or three dimensions).
+    ///
+    /// # Errors
+    /// Breaks that do not increase, control points of another number, NaN or infinity, a degree of
+    /// zero or above 18.
+    pub fn new(
+        breaks: Vec<f64>,
+        control: &[DVec3],
+        degree: usize,
+        dimension: Dimension,
+    ) -> Result<Self, InputError> {
+        let control = control.iter().map(|p| p.extend(1.0)).collect();
+        Self::homogeneous(breaks, control, degree, dimension, false)
+    }
+
+    /// A rational curve: each control point with its weight, which has to be positive.
+    ///
+    /// # Errors
+    /// As [`PiecewiseBezier::new`]; weights of another number, or not positive.
+    pub fn rational(
+        breaks: Vec<f64>,
+        control: &[DVec3],
+        weights: &[f64],
+        degree: usize,
+        dimension: Dimension,
+    ) -> Result<Self, InputError> {
+        let control = weighted(control, weights)?;
+        Self::homogeneous(breaks, control, degree, dimension, true)
+    }
+
+    /// From the power basis (SciPy's `PPoly`): piece `i` is `Σ_k c_k (u − breaks[i])^{d−k}`, and its
+    /// `degree + 1` vectors stand in that order, highest power first, piece after piece.
+    ///
+    /// # Errors
+    /// As [`PiecewiseBezier::new`].
+    pub fn from_power(
+        breaks: Vec<f64>,
+        coefficients: &[DVec3],
+        degree: usize,
+        dimension: Dimension,
+    ) -> Result<Self, InputError> {
+        check_shape(&breaks, coefficients.len(), degree, "coefficients")?;
+        let rows: Vec<Vec<f64>> = (0..=degree).map(binomials).collect();
+        let mut control = Vec::with_capacity(coefficients.len());
+        for (piece, w) in coefficients.chunks_exact(degree + 1).zip(breaks.windows(2)) {
+            let h = w[1] - w[0];
+            // In t = (u − u_i)/h the coefficient of t^k is c h^k; B_j = Σ_{k≤j} C(j,k)/C(d,k) c_k.
+            let mut scaled = Vec::with_capacity(degree + 1);
+            let mut power = 1.0;
+            for &c in piece.iter().rev() {
+                scaled.push(c * power);
+                power *= h;
+            }
+            control.extend((0..=degree).map(|j| {
+                // The constant last: it may be far larger than the rest.
+                let rest = (1..=j)
+                    .fold(DVec3::ZERO, |sum, k| sum + scaled[k] * (rows[j][k] / rows[degree][k]));
+                (scaled[0] + rest).extend(1.0)
+            }));
+        }
+        Self::homogeneous(breaks, control, degree, dimension, false)
+    }
+
+    /// A B-spline of knots `t_0 ≤ … ≤ t_{n+d}` and `n` control points on its base interval
+    /// `[t_d, t_n]` (SciPy's `BSpline`), by Boehm's knot insertion.
+    ///
+    /// # Errors
+    /// Knots that decrease or are not `n + d + 1`, an empty base interval, and as
+    /// [`PiecewiseBezier::new`].
+    pub fn from_bspline(
+        knots: &[f64],
+        control: &[DVec3],
+        degree: usize,
+        dimension: Dimension,
+    ) -> Result<Self, InputError> {
+        let control: Vec<DVec4> = control.iter().map(|p| p.extend(1.0)).collect();
+        check_degree(degree)?;
+        let (breaks, pieces) = bezier_of_bspline(knots, &control, degree)?;
+        Self::homogeneous(breaks, pieces, degree, dimension, false)
+    }
+
+    /// A NURBS curve: a B-spline whose control points carry positive weights.
+    ///
+    /// # Errors
+    /// As [`PiecewiseBezier::from_bspline`] and [`PiecewiseBezier::rational`].
+    pub fn from_nurbs(
+        knots: &[f64],
+        control: &[DVec3],
+        weights: &[f64],
+        degree: usize,
+        dimension: Dimension,
+    ) -> Result<Self, InputError> {
+        let control = weighted(control, weights)?;
+        check_degree(degree)?;
+        let (breaks, pieces) = bezier_of_bspline(knots, &control, degree)?;
+        Self::homogeneous(breaks, pieces, degree, dimension, true)
+    }
+
+    fn homogeneous(
+        breaks: Vec<f64>,
+        control: Vec<DVec4>,
+        degree: usize,
+        dimension: Dimension,
+        rational: bool,
+    ) -> Result<Self, InputError> {
+        check_shape(&breaks, control.len(), degree, "control")?;
+        if let Some(index) = control.iter().position(|p| !p.is_finite()) {
+            let entries = control[index].to_array();
+            let value = entries.into_iter().find(|x| !x.is_finite()).unwrap_or(f64::NAN);
+            return Err(InputError::NotFinite { argument: "control", index, value });
+        }
+        Ok(Self { breaks, control, degree, rational, dimension })
+    }
+
+    /// The parameters at the ends of the pieces.
+    #[must_use]
+    pub fn breaks(&self) -> &[f64] {
+        &self.breaks
+    }
+
+    /// The degree of the pieces.
+    #[must_use]
+    pub fn degree(&self) -> usize {
+        self.degree
+    }
+
+    /// Planar or spatial.
+    #[must_use]
+    pub fn dimension(&self) -> Dimension {
+        self.dimension
+    }
+
+    /// Whether the control points carry weights.
+    #[must_use]
+    pub fn is_rational(&self) -> bool {
+        self.rational
+    }
+
+    /// Number of pieces.
+    #[must_use]
+    pub fn pieces(&self) -> usize {
+        self.breaks.len() - 1
+    }
+
+    /// Homogeneous control points of a piece.
+    #[must_use]
+    pub fn piece(&self, i: usize) -> &[DVec4] {
+        let stride = self.degree + 1;
+        &self.control[i * stride..(i + 1) * stride]
+    }
+
+    /// Position at a parameter (outside the breaks: of the end pieces). Cost O(log N).
+    #[must_use]
+    pub fn position(&self, u: f64) -> DVec3 {
+        let last = self.pieces() - 1;
+        let i = self.breaks.partition_point(|&b| b <= u).saturating_sub(1).min(last);
+        let t = (u - self.breaks[i]) / (self.breaks[i + 1] - self.breaks[i]);
+        let p = split(self.piece(i), t).1[0];
+        p.truncate() / p.w
+    }
+
+    /// The parts of pieces that lie in `[from, to]`, moved so that `origin` is zero. A break closer
+    /// to an end of the interval than `1e−12` of its length counts as that end.
+    #[must_use]
+    pub fn between(&self, [from, to]: [f64; 2], origin: DVec3) -> Vec<BezierPart> {
+        let snap = 1e-12 * (to - from);
+        let first = self.breaks.partition_point(|&b| b <= from + snap).saturating_sub(1);
+        let mut parts = Vec::new();
+        for i in first..self.pieces() {
+            let [start, end] = [self.breaks[i], self.breaks[i + 1]];
+            if start >= to - snap {
+                break;
+            }
+            let mut control: Vec<DVec4> =
+                self.piece(i).iter().map(|p| (p.truncate() - origin * p.w).extend(p.w)).collect();
+            let (begins, ends) = (start < from - snap, end > to + snap);
+            // The later cut first: its parameter is that of the whole piece.
+            if ends {
+                control = split(&control, (to - start) / (end - start)).0;
+            }
+            if begins {
+                let end = if ends { to } else { end };
+                control = split(&control, (from - start) / (end - start)).1;
+            }
+            let local = |u: f64| (u - from) / (to - from);
+            parts.push(BezierPart {
+                control,
+                local: [
+                    if parts.is_empty() { 0.0 } else { local(start) },
+                    if end > to - snap { 1.0 } else { local(end) },
+                ],
+            });
+        }
+        parts
+    }
+}
+
+impl From<&PiecewiseCubic> for PiecewiseBezier {
+    fn from(curve: &PiecewiseCubic) -> Self {
+        let points = |i| curve.segment(i).bezier_points();
+        Self {
+            breaks: curve.knots().to_vec(),
+            control: (0..curve.segments()).flat_map(points).map(|p| p.extend(1.0)).collect(),
+            degree: 3,
+            rational: false,
+            dimension: curve.dimension(),
+        }
+    }
+}
+
+fn weighted(control: &[DVec3], weights: &[f64]) -> Result<Vec<DVec4>, InputError> {
+    if weights.len() != control.len() {
+        let (expected, found) = (control.len(), weights.len());
+        let per = "one for each control point";
+        return Err(InputError::Length { argument: "weights", expected, found, per });
+    }
+    if let Some(index) = weights.iter().position(|&w| !(w > 0.0 && w.is_finite())) {
+        let (argument, value) = ("weights", weights[index]);
+        let allowed = "positive and finite";
+        return Err(InputError::OutOfRange { argument, index, value, allowed });
+    }
+    Ok(control.iter().zip(weights).map(|(&p, &w)| (p * w).extend(w)).collect())
+}
+
+fn check_degree(degree: usize) -> Result<(), InputError> {
+    if (1..=MAX_DEGREE).contains(&degree) {
+        return Ok(());
+    }
+    let (argument, value) = ("degree", degree as f64);
+    Err(InputError::Scalar { argument, value, allowed: "between 1 and 18" })
+}
+
+fn check_shape(
+    breaks: &[f64],
+    found: usize,
+    degree: usize,
+    argument: &'static str,
+) -> Result<(), InputError> {
+    check_degree(degree)?;
+    if breaks.len() < 2 {
+        let found = breaks.len();
+        let (argument, why) = ("breaks", "");
+        return Err(InputError::TooFewPoints { argument, needed: 2, found, why });
+    }
+    check_increasing("breaks", breaks)?;
+    let expected = (breaks.len() - 1) * (degree + 1);
+    if found != expected {
+        let per = "degree + 1 for each interval of the breaks";
+        return Err(InputError::Length { argument, expected, found, per });
+    }
+    Ok(())
+}

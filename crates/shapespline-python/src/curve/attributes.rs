@@ -1,0 +1,199 @@
+//! What a curve was made of, and how: attributes, and the check of its shape.
+
+use numpy::PyArray1;
+use pyo3::prelude::*;
+use shapespline::{criteria::Checker, geometry::Boundary};
+
+use super::SpaceCurve;
+use crate::{
+    diagnostics::{Diagnostics, SearchStep},
+    error::input_error,
+    options::{self, CriteriaNames, tolerances},
+    output::{FloatArray, vectors},
+    report::ShapeReport,
+    tangents::Tangents,
+    work::detached,
+};
+
+/// The name of a boundary that has one.
+pub(super) fn boundary_name(boundary: Boundary) -> Option<&'static str> {
+    match boundary {
+        Boundary::ZeroCurvature => Some("zero-curvature"),
+        Boundary::Periodic => Some("periodic"),
+        Boundary::Circular => Some("circular"),
+        Boundary::Tangents { .. } => None,
+    }
+}
+
+#[pymethods]
+impl SpaceCurve {
+    /// The points that the curve interpolates, shape (n, dim); a fresh array.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import shapespline as ss
+    /// >>> ss.NuSpline([[0, 0], [1, 2]]).points
+    /// array([[0., 0.],
+    ///        [1., 2.]])
+    #[getter]
+    fn points<'py>(&self, py: Python<'py>) -> PyResult<FloatArray<'py>> {
+        vectors(py, self.curve.cubic().points(), self.curve.cubic().dimension())
+    }
+
+    /// The parameters of the points, strictly increasing, shape (n,); a fresh array.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import shapespline as ss
+    /// >>> ss.NuSpline([[0, 0], [3, 4], [3, 5]]).parameters
+    /// array([0., 5., 6.])
+    #[getter]
+    fn parameters<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        PyArray1::from_slice(py, self.curve.cubic().knots())
+    }
+
+    /// The first derivatives at the points, shape (n, dim), in units of the points over units of the
+    /// parameter; a fresh array.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import shapespline as ss
+    /// >>> ss.NuSpline([[0, 0], [3, 4]]).tangents
+    /// array([[0.6, 0.8],
+    ///        [0.6, 0.8]])
+    #[getter]
+    fn tangents<'py>(&self, py: Python<'py>) -> PyResult<FloatArray<'py>> {
+        vectors(py, &self.curve.tangents(), self.curve.cubic().dimension())
+    }
+
+    /// The tension at each point, shape (n,), without unit: 0 is none, and more of it pulls the curve
+    /// towards the polygon; a fresh array.
+    ///
+    /// For a ν-spline this is ν. Of closed data the first and the last point are one node and have
+    /// one tension.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import shapespline as ss
+    /// >>> ss.NuSpline([[0, 0], [3, 4], [3, 5]], tension=2).tension
+    /// array([2., 2., 2.])
+    #[getter]
+    fn tension<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        PyArray1::from_slice(py, self.curve.tension())
+    }
+
+    /// The end conditions: ``"zero-curvature"``, ``"periodic"``, ``"circular"`` or a `Tangents`.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import shapespline as ss
+    /// >>> ss.NuSpline([[0, 0], [3, 4]], boundary="natural").boundary
+    /// 'zero-curvature'
+    #[getter]
+    fn boundary<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        match self.curve.boundary() {
+            Boundary::Tangents { start, end } => {
+                let tangents = Tangents::new(start, end, self.curve.cubic().dimension());
+                Ok(Bound::new(py, tangents)?.into_any())
+            }
+            named => Ok(boundary_name(named).unwrap_or_default().into_pyobject(py)?.into_any()),
+        }
+    }
+
+    /// What the search for tension took, a `Diagnostics`; ``None`` for a curve of given tension.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import shapespline as ss
+    /// >>> ss.NuSpline.shape_preserving([[0, 0], [3, 4], [3, 5]]).diagnostics.status
+    /// 'solved'
+    #[getter]
+    fn diagnostics(&self) -> Option<Diagnostics> {
+        self.search.as_ref().map(|search| Diagnostics::from(&search.diagnostics))
+    }
+
+    /// The steps of the search for tension, a list of `SearchStep`; ``None`` for a curve of given
+    /// tension.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import shapespline as ss
+    /// >>> points = [[0, 0, 0], [4, 0, 0], [4.5, 0.5, 0], [4.5, 1, 0.5], [4.5, 1, 5]]
+    /// >>> steps = ss.NuSpline.shape_preserving(points, "uniform").history
+    /// >>> steps[0].violations, steps[-1].violations
+    /// (2, 0)
+    #[getter]
+    fn history(&self) -> Option<Vec<SearchStep>> {
+        self.search.as_ref().map(|search| search.history.iter().map(SearchStep::from).collect())
+    }
+
+    /// Discrete torsion of the data on each segment, in reciprocal units of the points, shape
+    /// (segments,); NaN where there is none. For figures.
+    fn _discrete_torsion<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let polygon = self.curve.polygon().map_err(input_error)?;
+        let torsion = (0..polygon.segments()).map(|i| polygon.discrete_torsion(i)).collect();
+        Ok(PyArray1::from_vec(py, torsion))
+    }
+
+    /// Check whether the curve keeps the shape of its points.
+    ///
+    /// Parameters
+    /// ----------
+    /// criteria : str or iterable of str, optional
+    ///     Any of ``"convexity"``, ``"inflection"``, ``"torsion"``, ``"coplanarity"`` and
+    ///     ``"collinearity"``; default all of them.
+    /// coplanarity, collinearity : float
+    ///     ε₁ and ε₀ in (0, 1]: sine of the largest angle between binormal and plane normal where four
+    ///     points lie in a plane, and between tangent and line where three lie on a line.
+    /// tolerance : float
+    ///     In [0, 1): points whose turning angle has a smaller sine count as collinear, and four whose
+    ///     unit chords span a smaller volume as coplanar.
+    ///
+    /// Returns
+    /// -------
+    /// ShapeReport
+    ///     The violations, counts, and margins of all segments.
+    ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     If a criterion is unknown or a tolerance outside its range.
+    ///
+    /// Notes
+    /// -----
+    /// Every criterion is decided exactly, from the Bézier legs of each cubic segment; nothing is
+    /// sampled. Karavelas & Kaklis, Numer. Algorithms 23 (2000), Problem (P) and (5.34)–(5.57), with
+    /// inflection added. Cost O(n), on all threads for long curves.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import shapespline as ss
+    /// >>> points = [[0, 0, 0], [4, 0, 0], [4.5, 0.5, 0], [4.5, 1, 0.5], [4.5, 1, 5]]
+    /// >>> ss.NuSpline(points, "uniform").check().counts()["convexity"]
+    /// (2, 2)
+    /// >>> ss.NuSpline.shape_preserving(points, "uniform").check().ok
+    /// True
+    #[pyo3(
+        signature = (criteria=CriteriaNames::ALL, *, coplanarity=0.2, collinearity=0.2, tolerance=1e-9),
+        text_signature = "($self, criteria=None, *, coplanarity=0.2, collinearity=0.2, tolerance=1e-9)"
+    )]
+    fn check(
+        &self,
+        py: Python<'_>,
+        criteria: CriteriaNames,
+        #[pyo3(from_py_with = options::coplanarity)] coplanarity: f64,
+        #[pyo3(from_py_with = options::collinearity)] collinearity: f64,
+        #[pyo3(from_py_with = options::tolerance)] tolerance: f64,
+    ) -> PyResult<ShapeReport> {
+        let criteria = criteria.0;
+        let tolerances = tolerances(coplanarity, collinearity, tolerance)?;
+        let cubic = self.curve.cubic();
+        let report = detached(py, cubic.segments(), || {
+            let polygon = self.curve.polygon()?;
+            let checker = Checker::new(&polygon, criteria, tolerances);
+            Ok(checker.report(|i| cubic.legs()[i]))
+        })
+        .map_err(input_error)?;
+        Ok(ShapeReport::of(report, self.curve.clone(), criteria, tolerances))
+    }
+}

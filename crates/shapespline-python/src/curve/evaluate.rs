@@ -1,0 +1,299 @@
+//! Position, derivatives, curvature, torsion and frame at any parameters.
+
+use pyo3::{IntoPyObjectExt, prelude::*};
+use rayon::prelude::*;
+use shapespline::geometry::{DVec3, Side};
+
+use super::{Curve, SpaceCurve};
+use crate::{
+    error::input_error,
+    input::Query,
+    options,
+    output::{FloatArray, shaped, vector, zeros},
+    work::detached,
+};
+
+/// Parameters a task when a quantity is evaluated in parallel.
+const BLOCK: usize = 8192;
+
+impl SpaceCurve {
+    /// `COLUMNS` numbers for each parameter, computed from the curve.
+    fn rows<const COLUMNS: usize>(
+        &self,
+        py: Python<'_>,
+        u: &[f64],
+        of: impl Fn(&dyn Curve, f64) -> [f64; COLUMNS] + Send + Sync,
+    ) -> PyResult<Vec<f64>> {
+        let mut values = zeros(u.len(), COLUMNS)?;
+        let curve = self.curve.as_ref();
+        detached(py, u.len(), || {
+            let block = |(u, out): (&[f64], &mut [f64])| {
+                for (&u, row) in u.iter().zip(out.chunks_exact_mut(COLUMNS)) {
+                    row.copy_from_slice(&of(curve, u));
+                }
+            };
+            if u.len() <= BLOCK {
+                block((u, &mut values));
+            } else {
+                u.par_chunks(BLOCK).zip(values.par_chunks_mut(BLOCK * COLUMNS)).for_each(block);
+            }
+        });
+        Ok(values)
+    }
+
+    /// A number for each parameter: a float for one, an array of the query's shape for many.
+    fn scalar<'py>(
+        &self,
+        py: Python<'py>,
+        u: &Query<'py>,
+        of: impl Fn(&dyn Curve, f64) -> f64 + Send + Sync,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        match u {
+            Query::One(u) => of(self.curve.as_ref(), *u).into_bound_py_any(py),
+            Query::Many(u) => {
+                let values = self.rows(py, u.values(), |curve, u| [of(curve, u)])?;
+                Ok(shaped(py, values, u.shape())?.into_any())
+            }
+        }
+    }
+
+    /// A vector with as many components as asked for each parameter.
+    fn vectors<'py>(
+        &self,
+        py: Python<'py>,
+        u: &Query<'py>,
+        columns: usize,
+        of: impl Fn(&dyn Curve, f64) -> DVec3 + Send + Sync,
+    ) -> PyResult<FloatArray<'py>> {
+        match u {
+            Query::One(u) => Ok(vector(py, of(self.curve.as_ref(), *u), columns)),
+            Query::Many(u) => {
+                let values = if columns == 2 {
+                    self.rows(py, u.values(), |curve, u| {
+                        let v = of(curve, u);
+                        [v.x, v.y]
+                    })?
+                } else {
+                    self.rows(py, u.values(), |curve, u| of(curve, u).to_array())?
+                };
+                shaped(py, values, &with_columns(u.shape(), columns))
+            }
+        }
+    }
+}
+
+fn with_columns(shape: &[usize], columns: usize) -> Vec<usize> {
+    shape.iter().copied().chain([columns]).collect()
+}
+
+#[pymethods]
+impl SpaceCurve {
+    /// Evaluate the curve or a derivative.
+    ///
+    /// Parameters
+    /// ----------
+    /// u : array_like
+    ///     Parameters, of any shape. Outside the parameters of the points the end polynomials go on;
+    ///     on a closed curve the parameter wraps around. NaN gives NaN.
+    /// nu : int
+    ///     Order of the derivative with respect to u; 0 gives positions. (The ν of ν-splines is
+    ///     called ``tension``.)
+    /// side : {"right", "left"}
+    ///     Which segment counts at the parameter of a point, where derivatives may jump.
+    ///
+    /// Returns
+    /// -------
+    /// numpy.ndarray, shape (*u.shape, dim)
+    ///     In units of the points over units of the parameter to the power ``nu``.
+    ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     If ``nu`` is negative or ``side`` unknown.
+    /// TypeError
+    ///     If ``u`` does not hold real numbers.
+    ///
+    /// Notes
+    /// -----
+    /// Cost O(log n) for one parameter, O(1) each for many; many run on all threads.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import shapespline as ss
+    /// >>> curve = ss.NuSpline([[0, 0], [3, 4], [6, 8]])
+    /// >>> curve(2.5)
+    /// array([1.5, 2. ])
+    /// >>> curve([[0, 5], [10, 15]], 1).shape
+    /// (2, 2, 2)
+    #[pyo3(
+        signature = (u, nu=0, *, side=Side::Right),
+        text_signature = "($self, u, nu=0, *, side='right')"
+    )]
+    fn _call<'py>(
+        &self,
+        py: Python<'py>,
+        u: Query<'py>,
+        #[pyo3(from_py_with = options::nu)] nu: usize,
+        #[pyo3(from_py_with = options::side)] side: Side,
+    ) -> PyResult<FloatArray<'py>> {
+        // From the fourth derivative on all are zero.
+        let order = nu.min(4);
+        let columns = self.columns();
+        match u {
+            Query::One(u) => Ok(vector(py, self.curve.evaluate(u, order, side), columns)),
+            Query::Many(u) => {
+                let parameters = u.values();
+                let mut values = zeros(parameters.len(), columns)?;
+                detached(py, parameters.len(), || {
+                    self.curve.evaluate_many(parameters, order, side, &mut values)
+                })
+                .map_err(input_error)?;
+                shaped(py, values, &with_columns(u.shape(), columns))
+            }
+        }
+    }
+
+    /// Curvature κ = ‖γ′ × γ″‖ / ‖γ′‖³, in reciprocal units of the points.
+    ///
+    /// Parameters
+    /// ----------
+    /// u : array_like
+    ///     Parameters, of any shape.
+    /// side : {"right", "left"}
+    ///     Which segment counts at the parameter of a point. (κ of a ν-spline does not jump.)
+    ///
+    /// Returns
+    /// -------
+    /// float or numpy.ndarray, shape u.shape
+    ///     Never negative, in the plane as well; NaN where γ′ = 0.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import numpy as np
+    /// >>> import shapespline as ss
+    /// >>> angle = np.linspace(0, 2 * np.pi, 101)
+    /// >>> circle = 2 * np.column_stack([np.cos(angle), np.sin(angle)])
+    /// >>> circle[-1] = circle[0]
+    /// >>> round(ss.NuSpline(circle, boundary="periodic").curvature(1.0), 3)
+    /// 0.5
+    #[pyo3(signature = (u, *, side=Side::Right), text_signature = "($self, u, *, side='right')")]
+    fn curvature<'py>(
+        &self,
+        py: Python<'py>,
+        u: Query<'py>,
+        #[pyo3(from_py_with = options::side)] side: Side,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        self.scalar(py, &u, move |curve, u| {
+            let (segment, t) = curve.cubic().locate(u, side);
+            curve.cubic().segment(segment).curvature(t)
+        })
+    }
+
+    /// Curvature vector dT/ds: curvature times principal normal, in reciprocal units of the points.
+    ///
+    /// Parameters
+    /// ----------
+    /// u : array_like
+    ///     Parameters, of any shape.
+    /// side : {"right", "left"}
+    ///     Which segment counts at the parameter of a point.
+    ///
+    /// Returns
+    /// -------
+    /// numpy.ndarray, shape (*u.shape, dim)
+    ///     Zero on a line; NaN where γ′ = 0.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import shapespline as ss
+    /// >>> ss.NuSpline([[0, 0], [3, 4], [6, 8]]).curvature_vector(1.0).shape
+    /// (2,)
+    #[pyo3(signature = (u, *, side=Side::Right), text_signature = "($self, u, *, side='right')")]
+    fn curvature_vector<'py>(
+        &self,
+        py: Python<'py>,
+        u: Query<'py>,
+        #[pyo3(from_py_with = options::side)] side: Side,
+    ) -> PyResult<FloatArray<'py>> {
+        self.vectors(py, &u, self.columns(), move |curve, u| {
+            let (segment, t) = curve.cubic().locate(u, side);
+            curve.cubic().segment(segment).curvature_vector(t)
+        })
+    }
+
+    /// Torsion τ = det[γ′, γ″, γ‴] / ‖γ′ × γ″‖², in reciprocal units of the points.
+    ///
+    /// Parameters
+    /// ----------
+    /// u : array_like
+    ///     Parameters, of any shape.
+    /// side : {"right", "left"}
+    ///     Which segment counts at the parameter of a point, where torsion jumps.
+    ///
+    /// Returns
+    /// -------
+    /// float or numpy.ndarray, shape u.shape
+    ///     Positive where the curve twists like a right-handed screw; zero in the plane; NaN where the
+    ///     curvature vanishes.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import numpy as np
+    /// >>> import shapespline as ss
+    /// >>> t = np.linspace(0, 6, 601)
+    /// >>> helix = np.column_stack([np.cos(t), np.sin(t), t])
+    /// >>> round(ss.NuSpline(helix, boundary="circular").torsion(4.001), 2)
+    /// 0.5
+    #[pyo3(signature = (u, *, side=Side::Right), text_signature = "($self, u, *, side='right')")]
+    fn torsion<'py>(
+        &self,
+        py: Python<'py>,
+        u: Query<'py>,
+        #[pyo3(from_py_with = options::side)] side: Side,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        self.scalar(py, &u, move |curve, u| {
+            let (segment, t) = curve.cubic().locate(u, side);
+            curve.cubic().segment(segment).torsion(t)
+        })
+    }
+
+    /// The Frenet frame: unit tangent T, principal normal N and binormal B = T × N.
+    ///
+    /// Parameters
+    /// ----------
+    /// u : array_like
+    ///     Parameters, of any shape.
+    /// side : {"right", "left"}
+    ///     Which segment counts at the parameter of a point.
+    ///
+    /// Returns
+    /// -------
+    /// T, N, B : numpy.ndarray, shape (*u.shape, 3)
+    ///     Three components also for curves in the plane, whose B is (0, 0, ±1). N and B are NaN where
+    ///     the curvature vanishes.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import shapespline as ss
+    /// >>> T, N, B = ss.NuSpline([[0, 0], [1, 1], [2, 0]]).frame(0.5)
+    /// >>> B
+    /// array([ 0.,  0., -1.])
+    #[pyo3(signature = (u, side=Side::Right), text_signature = "($self, u, side='right')")]
+    #[allow(clippy::type_complexity)]
+    fn frame<'py>(
+        &self,
+        py: Python<'py>,
+        u: Query<'py>,
+        #[pyo3(from_py_with = options::side)] side: Side,
+    ) -> PyResult<(FloatArray<'py>, FloatArray<'py>, FloatArray<'py>)> {
+        let frame = move |curve: &dyn Curve, u: f64| {
+            let (segment, t) = curve.cubic().locate(u, side);
+            curve.cubic().segment(segment).frame(t)
+        };
+        Ok((
+            self.vectors(py, &u, 3, move |curve, u| frame(curve, u).tangent)?,
+            self.vectors(py, &u, 3, move |curve, u| frame(curve, u).normal)?,
+            self.vectors(py, &u, 3, move |curve, u| frame(curve, u).binormal)?,
+        ))
+    }
+}

@@ -1,0 +1,200 @@
+//! `SpaceCurve`: what every space curve is and can do, whatever its family.
+//!
+//! A family implements [`Curve`] for its Rust type, gets a [`Family`] tag and a Python class of its
+//! own with the constructors; everything else is inherited. One file a group of methods:
+//! [`attributes`], [`evaluate`], [`measure`], [`export`].
+
+use std::{fmt::Debug, sync::Arc};
+
+use pyo3::{PyClass, PyClassInitializer, exceptions::PyTypeError, prelude::*, types::PyBytes};
+use shapespline::{
+    geometry::{Boundary, DVec3, DataPolygon, InputError, PiecewiseCubic, Side},
+    nu::NuSpline,
+    search::Interpolant,
+};
+
+use crate::{diagnostics::Search, nu, pickle, work::detached};
+
+mod attributes;
+mod evaluate;
+mod export;
+mod measure;
+
+/// The families, by the numbers that pickles hold: append only.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+pub(crate) enum Family {
+    /// ν-splines.
+    Nu,
+}
+
+/// A space curve of any family.
+pub(crate) trait Curve: Debug + Send + Sync {
+    fn family(&self) -> Family;
+    /// The cubic Bézier segments.
+    fn cubic(&self) -> &PiecewiseCubic;
+    /// One number a point, 0 = none.
+    fn tension(&self) -> &[f64];
+    /// One a point.
+    fn tangents(&self) -> Vec<DVec3>;
+    fn boundary(&self) -> Boundary;
+    fn polygon(&self) -> Result<DataPolygon, InputError>;
+    /// Appends the curve in postcard's form.
+    fn write(&self, bytes: Vec<u8>) -> Result<Vec<u8>, postcard::Error>;
+
+    /// Derivative of an order at one parameter.
+    fn evaluate(&self, u: f64, order: usize, side: Side) -> DVec3 {
+        self.cubic().evaluate(u, order, side)
+    }
+
+    /// Derivatives of an order at many parameters, row by row.
+    fn evaluate_many(
+        &self,
+        u: &[f64],
+        order: usize,
+        side: Side,
+        out: &mut [f64],
+    ) -> Result<(), InputError> {
+        self.cubic().evaluate_many(u, order, side, out)
+    }
+}
+
+impl Curve for NuSpline {
+    fn family(&self) -> Family {
+        Family::Nu
+    }
+    fn cubic(&self) -> &PiecewiseCubic {
+        Interpolant::curve(self)
+    }
+    fn tension(&self) -> &[f64] {
+        Interpolant::tension(self)
+    }
+    fn tangents(&self) -> Vec<DVec3> {
+        Interpolant::tangents(self)
+    }
+    fn boundary(&self) -> Boundary {
+        Interpolant::boundary(self)
+    }
+    fn polygon(&self) -> Result<DataPolygon, InputError> {
+        Interpolant::polygon(self)
+    }
+    fn write(&self, bytes: Vec<u8>) -> Result<Vec<u8>, postcard::Error> {
+        postcard::to_extend(self, bytes)
+    }
+}
+
+/// A curve through points in space or in the plane: the base of all families.
+///
+/// Not made directly: use `NuSpline`. A curve is immutable, compares and hashes by identity, can be
+/// pickled and copied, and may be used from several threads at once.
+///
+/// Examples
+/// --------
+/// >>> import shapespline as ss
+/// >>> curve = ss.NuSpline([[0, 0, 0], [1, 0, 0], [1, 1, 0], [1, 1, 1]])
+/// >>> isinstance(curve, ss.SpaceCurve)
+/// True
+/// >>> curve([0.0, 0.5]).shape
+/// (2, 3)
+#[pyclass(module = "shapespline", frozen, subclass)]
+pub(crate) struct SpaceCurve {
+    pub(crate) curve: Arc<dyn Curve>,
+    pub(crate) search: Option<Arc<Search>>,
+}
+
+impl SpaceCurve {
+    pub(crate) fn of(curve: Arc<dyn Curve>, search: Option<Search>) -> Self {
+        Self { curve, search: search.map(Arc::new) }
+    }
+
+    /// The object of the family's class.
+    pub(crate) fn into_python(self, py: Python<'_>) -> PyResult<Py<PyAny>> {
+        match self.curve.family() {
+            Family::Nu => self.with_class(py, nu::NuSpline),
+        }
+    }
+
+    fn with_class<S>(self, py: Python<'_>, class: S) -> PyResult<Py<PyAny>>
+    where
+        S: PyClass<BaseType = Self>,
+    {
+        Ok(Py::new(py, PyClassInitializer::from(self).add_subclass(class))?.into_any())
+    }
+
+    /// Number of coordinates.
+    fn columns(&self) -> usize {
+        self.curve.cubic().dimension().len()
+    }
+}
+
+#[pymethods]
+impl SpaceCurve {
+    #[new]
+    fn new() -> PyResult<Self> {
+        Err(PyTypeError::new_err("SpaceCurve is the base of the curves: make a NuSpline"))
+    }
+
+    fn __repr__(slf: &Bound<'_, Self>) -> PyResult<String> {
+        let curve = &slf.get().curve;
+        let cubic = curve.cubic();
+        let (n, knots) = (cubic.points().len(), cubic.knots());
+        let boundary = attributes::boundary_name(curve.boundary()).unwrap_or("tangents");
+        let tense = curve.tension().iter().filter(|&&t| t > 0.0).count();
+        let tension = match tense {
+            0 => "no tension".to_owned(),
+            _ => {
+                let largest = curve.tension().iter().copied().fold(0.0, f64::max);
+                format!("tension up to {} at {tense} of them", short(largest))
+            }
+        };
+        Ok(format!(
+            "<{}: {n} points in {}, {tension}; u from {} to {}, boundary {boundary}>",
+            slf.get_type().name()?,
+            if cubic.dimension().len() == 2 { "the plane" } else { "space" },
+            short(knots[0]),
+            short(knots[n - 1]),
+        ))
+    }
+
+    fn __reduce__<'py>(
+        &self,
+        py: Python<'py>,
+    ) -> PyResult<(Bound<'py, PyAny>, (Bound<'py, PyBytes>,))> {
+        let make = py.import("shapespline._core")?.getattr("_curve_from_bytes")?;
+        let write = || pickle::write_curve(self.curve.as_ref(), self.search.as_deref());
+        let bytes = detached(py, 0, write)?;
+        Ok((make, (PyBytes::new(py, &bytes),)))
+    }
+
+    fn __copy__(slf: Py<Self>) -> Py<Self> {
+        slf
+    }
+
+    fn __deepcopy__(slf: Py<Self>, _memo: &Bound<'_, PyAny>) -> Py<Self> {
+        slf
+    }
+}
+
+/// A number with a few digits, for people.
+fn short(x: f64) -> String {
+    let magnitude = x.abs();
+    if magnitude == 0.0 || (1e-3..1e6).contains(&magnitude) {
+        let digits = 5i32.saturating_sub(magnitude.max(1e-3).log10().floor() as i32).clamp(0, 8);
+        let text = format!("{x:.*}", digits as usize);
+        match text.contains('.') {
+            true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
+            false => text,
+        }
+    } else {
+        format!("{x:.5e}")
+    }
+}
+
+/// Makes calling a curve a documented method.
+///
+/// pyo3 puts `__call__` into a slot, and Python shows every slot as `(*args, **kwargs)` without a
+/// word: the most used method would be the only one without help.
+pub(crate) fn document_call(py: Python<'_>) -> PyResult<()> {
+    let class = py.get_type::<SpaceCurve>();
+    class.setattr("__call__", class.getattr("_call")?)?;
+    class.delattr("_call")
+}

@@ -1,0 +1,151 @@
+//! What a search did, for Python.
+
+use pyo3::{IntoPyObjectExt, prelude::*};
+use shapespline::search::{self, Phase, Status};
+
+/// Diagnostics and history of the search that found a curve.
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
+pub(crate) struct Search {
+    pub(crate) diagnostics: search::Diagnostics,
+    pub(crate) history: Vec<search::Step>,
+}
+
+/// Counts of the work that a shape-preserving fit took.
+///
+/// Attributes
+/// ----------
+/// status : str
+///     ``"solved"``: every criterion holds, by a complete solve and check at the end; or
+///     ``"iteration-limit"`` (the curve carried by a `ConvergenceError`).
+/// iterations : int
+///     Checks of the curve while tension was raised, the last one, which found no fault, included.
+/// solves : int
+///     Solves of the system of tangents, complete or in part.
+/// relaxations : int
+///     Rounds in which tension was lowered again (``strategy="fairest"``).
+/// nodes_changed : int
+///     Nodes whose tension is not zero in the end.
+///
+/// Examples
+/// --------
+/// >>> import shapespline as ss
+/// >>> points = [[0, 0, 0], [4, 0, 0], [4.5, 0.5, 0], [4.5, 1, 0.5], [4.5, 1, 5]]
+/// >>> ss.NuSpline.shape_preserving(points, "uniform").diagnostics
+/// Diagnostics(status='solved', iterations=..., solves=..., relaxations=..., nodes_changed=5)
+#[pyclass(module = "shapespline", frozen, get_all, eq, hash)]
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+pub(crate) struct Diagnostics {
+    /// How the search ended: ``"solved"`` or ``"iteration-limit"``.
+    status: String,
+    /// Checks of the curve while tension was raised, the last one included.
+    iterations: usize,
+    /// Solves of the system of tangents, complete or in part.
+    solves: usize,
+    /// Rounds in which tension was lowered again.
+    relaxations: usize,
+    /// Nodes whose tension is not zero in the end.
+    nodes_changed: usize,
+}
+
+impl From<&search::Diagnostics> for Diagnostics {
+    fn from(d: &search::Diagnostics) -> Self {
+        let status = match d.status {
+            Status::Solved => "solved",
+            Status::IterationLimit => "iteration-limit",
+            Status::Interrupted => "interrupted",
+        };
+        Self {
+            status: status.to_owned(),
+            iterations: d.iterations,
+            solves: d.solves,
+            relaxations: d.relaxations,
+            nodes_changed: d.nodes_changed,
+        }
+    }
+}
+
+#[pymethods]
+impl Diagnostics {
+    #[new]
+    fn new(
+        status: String,
+        iterations: usize,
+        solves: usize,
+        relaxations: usize,
+        nodes_changed: usize,
+    ) -> Self {
+        Self { status, iterations, solves, relaxations, nodes_changed }
+    }
+
+    fn __repr__(&self) -> String {
+        format!(
+            "Diagnostics(status='{}', iterations={}, solves={}, relaxations={}, nodes_changed={})",
+            self.status, self.iterations, self.solves, self.relaxations, self.nodes_changed
+        )
+    }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
+        let d = slf.get();
+        let arguments = (&d.status, d.iterations, d.solves, d.relaxations, d.nodes_changed);
+        Ok((slf.get_type().into_any(), arguments.into_bound_py_any(slf.py())?))
+    }
+}
+
+/// One step of the search for tension.
+///
+/// Attributes
+/// ----------
+/// phase : str
+///     ``"raise"``: tension was raised where criteria failed; ``"relax"``: runs of tension were
+///     lowered; ``"verify"``: everything was solved and checked anew.
+/// violations : int
+///     Segments that violated a criterion when the step began.
+/// changed : int
+///     Nodes whose tension the step changed.
+///
+/// Examples
+/// --------
+/// >>> import shapespline as ss
+/// >>> points = [[0, 0, 0], [4, 0, 0], [4.5, 0.5, 0], [4.5, 1, 0.5], [4.5, 1, 5]]
+/// >>> ss.NuSpline.shape_preserving(points, "uniform").history[0]
+/// SearchStep(phase='raise', violations=2, changed=5)
+#[pyclass(module = "shapespline", frozen, get_all, eq, hash)]
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+pub(crate) struct SearchStep {
+    /// ``"raise"``, ``"relax"`` or ``"verify"``.
+    phase: String,
+    /// Segments that violated a criterion when the step began.
+    violations: usize,
+    /// Nodes whose tension the step changed.
+    changed: usize,
+}
+
+impl From<&search::Step> for SearchStep {
+    fn from(step: &search::Step) -> Self {
+        let phase = match step.phase {
+            Phase::Raise => "raise",
+            Phase::Relax => "relax",
+            Phase::Verify => "verify",
+        };
+        Self { phase: phase.to_owned(), violations: step.violated, changed: step.changed }
+    }
+}
+
+#[pymethods]
+impl SearchStep {
+    #[new]
+    fn new(phase: String, violations: usize, changed: usize) -> Self {
+        Self { phase, violations, changed }
+    }
+
+    fn __repr__(&self) -> String {
+        let Self { phase, violations, changed } = self;
+        format!("SearchStep(phase='{phase}', violations={violations}, changed={changed})")
+    }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
+        let step = slf.get();
+        let arguments = (&step.phase, step.violations, step.changed);
+        Ok((slf.get_type().into_any(), arguments.into_bound_py_any(slf.py())?))
+    }
+}

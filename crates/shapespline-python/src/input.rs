@@ -1,0 +1,189 @@
+//! Numbers and arrays that come in. Every error names the argument.
+
+use numpy::{
+    PyArrayDescrMethods, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArray,
+    PyUntypedArrayMethods,
+};
+use pyo3::{
+    exceptions::{PyOverflowError, PyTypeError, PyValueError},
+    intern,
+    prelude::*,
+    types::{IntoPyDict, PyFloat, PyInt, PyString},
+};
+use shapespline::geometry::{DVec3, Dimension};
+
+/// An array of f64 in C order: the caller's own where it is that already, else a copy.
+pub(crate) struct Array<'py>(PyReadonlyArrayDyn<'py, f64>);
+
+impl<'py> Array<'py> {
+    pub(crate) fn values(&self) -> &[f64] {
+        // C order and alignment were seen to by `array`.
+        self.0.as_slice().unwrap_or_default()
+    }
+
+    pub(crate) fn shape(&self) -> &[usize] {
+        self.0.shape()
+    }
+
+    /// The shape as Python writes it.
+    pub(crate) fn shape_text(&self) -> String {
+        match self.shape() {
+            [n] => format!("({n},)"),
+            shape => {
+                let parts: Vec<String> = shape.iter().map(usize::to_string).collect();
+                format!("({})", parts.join(", "))
+            }
+        }
+    }
+}
+
+/// Converts anything that `numpy.asarray` takes.
+///
+/// # Errors
+/// `TypeError` for what is not real numbers, `ValueError` (naming the argument) for what is no array.
+pub(crate) fn array<'py>(argument: &str, object: &Bound<'py, PyAny>) -> PyResult<Array<'py>> {
+    if let Ok(array) = object.cast::<PyArrayDyn<f64>>()
+        && let Some(array) = in_c_order(array)
+    {
+        return Ok(array);
+    }
+    let py = object.py();
+    let numpy = py.import(intern!(py, "numpy"))?;
+    let any = numpy.getattr(intern!(py, "asarray"))?.call1((object,)).map_err(|error| {
+        // Rows of different lengths, for example.
+        let text = format!("{argument} must be an array of numbers: {}", error.value(py));
+        PyValueError::new_err(text)
+    })?;
+    let dtype = any.cast::<PyUntypedArray>()?.dtype();
+    if !matches!(dtype.kind(), b'b' | b'i' | b'u' | b'f') {
+        let given = if any.is(object) { "an array" } else { "a value" };
+        return Err(PyTypeError::new_err(format!(
+            "{argument} must hold real numbers, got {given} of type {} with dtype {}",
+            kind(object),
+            dtype.str()?,
+        )));
+    }
+    let options = [("dtype", "float64"), ("order", "C")].into_py_dict(py)?;
+    let copy = numpy.getattr(intern!(py, "array"))?.call((any,), Some(&options))?;
+    in_c_order(copy.cast::<PyArrayDyn<f64>>()?)
+        .ok_or_else(|| PyValueError::new_err(format!("{argument} cannot be read: it is in use")))
+}
+
+fn in_c_order<'py>(array: &Bound<'py, PyArrayDyn<f64>>) -> Option<Array<'py>> {
+    if !array.is_c_contiguous() {
+        return None;
+    }
+    let array = array.try_readonly().ok()?;
+    array.as_slice().is_ok().then_some(Array(array))
+}
+
+/// Points: `(n, 2)` or `(n, 3)`.
+pub(crate) struct Points {
+    pub(crate) points: Vec<DVec3>,
+    pub(crate) dimension: Dimension,
+}
+
+impl<'py> FromPyObject<'_, 'py> for Points {
+    type Error = PyErr;
+
+    fn extract(object: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
+        let array = array("points", &object)?;
+        let values = array.values();
+        match array.shape() {
+            [_, 3] => Ok(Self {
+                points: values.chunks_exact(3).map(DVec3::from_slice).collect(),
+                dimension: Dimension::Three,
+            }),
+            [_, 2] => Ok(Self {
+                points: values.chunks_exact(2).map(|p| DVec3::new(p[0], p[1], 0.0)).collect(),
+                dimension: Dimension::Two,
+            }),
+            _ => Err(PyValueError::new_err(format!(
+                "points must have shape (n, 2) or (n, 3), got shape {}",
+                array.shape_text()
+            ))),
+        }
+    }
+}
+
+/// One number, or an array of them.
+pub(crate) enum Numbers {
+    One(f64),
+    Many(Vec<f64>),
+}
+
+/// A number or a one-dimensional array of them.
+pub(crate) fn numbers(argument: &str, object: &Bound<'_, PyAny>) -> PyResult<Numbers> {
+    if let Ok(value) = object.cast::<PyFloat>() {
+        return Ok(Numbers::One(value.value()));
+    }
+    let array = array(argument, object)?;
+    match array.shape() {
+        [] => Ok(Numbers::One(array.values()[0])),
+        [_] => Ok(Numbers::Many(array.values().to_vec())),
+        _ => Err(PyValueError::new_err(format!(
+            "{argument} must be a number or have one axis, got shape {}",
+            array.shape_text()
+        ))),
+    }
+}
+
+/// Parameters at which a curve is asked for something.
+pub(crate) enum Query<'py> {
+    One(f64),
+    Many(Array<'py>),
+}
+
+impl<'py> FromPyObject<'_, 'py> for Query<'py> {
+    type Error = PyErr;
+
+    #[inline]
+    fn extract(object: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
+        if let Ok(value) = object.cast::<PyFloat>() {
+            return Ok(Self::One(value.value()));
+        }
+        if object.cast::<PyInt>().is_ok() {
+            return float("u", &object).map(Self::One);
+        }
+        let array = array("u", &object)?;
+        Ok(if array.shape().is_empty() { Self::One(array.values()[0]) } else { Self::Many(array) })
+    }
+}
+
+/// A number.
+pub(crate) fn float(argument: &str, object: &Bound<'_, PyAny>) -> PyResult<f64> {
+    object.extract::<f64>().map_err(|error| {
+        if error.is_instance_of::<PyOverflowError>(object.py()) {
+            PyValueError::new_err(format!("{argument} is too large for a float"))
+        } else {
+            PyTypeError::new_err(format!("{argument} must be a number, got {}", kind(object)))
+        }
+    })
+}
+
+/// An integer of at least `least`.
+pub(crate) fn count(argument: &str, least: usize, object: &Bound<'_, PyAny>) -> PyResult<usize> {
+    match object.extract::<i64>() {
+        Ok(value) => usize::try_from(value).ok().filter(|&n| n >= least).ok_or_else(|| {
+            PyValueError::new_err(format!("{argument} must be at least {least}, got {value}"))
+        }),
+        Err(error) if error.is_instance_of::<PyOverflowError>(object.py()) => {
+            let text = format!("{argument} must be an integer that 64 bits hold, got {object}");
+            Err(PyValueError::new_err(text))
+        }
+        Err(_) => {
+            let text = format!("{argument} must be an integer, got {}", kind(object));
+            Err(PyTypeError::new_err(text))
+        }
+    }
+}
+
+/// The text of a string argument, or `None`.
+pub(crate) fn text(object: &Bound<'_, PyAny>) -> Option<String> {
+    object.cast::<PyString>().ok().and_then(|s| s.to_str().ok().map(str::to_owned))
+}
+
+/// What an argument of the wrong kind is, for a message.
+pub(crate) fn kind(object: &Bound<'_, PyAny>) -> String {
+    object.get_type().name().map_or_else(|_| "object".to_owned(), |name| name.to_string())
+}

@@ -1,0 +1,38 @@
+//! The Python face of shapespline: arrays in and out, options by name, errors to exceptions.
+//!
+//! No mathematics lives here. Every space curve is a `SpaceCurve`; a family adds its own
+//! constructors (`NuSpline`). The package `python/shapespline` around this module holds what
+//! is better written in Python: figures and the command line.
+
+// Doc comments on Python classes are numpydoc docstrings: `points[0]` in them is no link.
+#![allow(rustdoc::broken_intra_doc_links)]
+
+use pyo3::prelude::*;
+
+mod curve;
+mod diagnostics;
+mod error;
+mod input;
+mod nu;
+mod options;
+mod output;
+mod pickle;
+mod report;
+mod tangents;
+mod work;
+
+/// Compiled part of shapespline: the curves and their reports.
+#[pymodule(gil_used = false)]
+fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    module.add_class::<curve::SpaceCurve>()?;
+    module.add_class::<nu::NuSpline>()?;
+    module.add_class::<tangents::Tangents>()?;
+    module.add_class::<report::ShapeReport>()?;
+    module.add_class::<report::ShapeRecord>()?;
+    module.add_class::<diagnostics::Diagnostics>()?;
+    module.add_class::<diagnostics::SearchStep>()?;
+    module.add_function(wrap_pyfunction!(pickle::_curve_from_bytes, module)?)?;
+    module.add_function(wrap_pyfunction!(pickle::_report_from_bytes, module)?)?;
+    module.add("__version__", env!("CARGO_PKG_VERSION"))?;
+    curve::document_call(module.py())
+}

@@ -1,0 +1,258 @@
+//! `NuSpline`: what is particular to ν-splines.
+
+use std::sync::Arc;
+
+use pyo3::{PyClassInitializer, prelude::*, types::PyType};
+use shapespline::{
+    criteria::Criterion,
+    geometry::DataPolygon,
+    nu::{self, Fit, FitError, SearchOptions, Status, Strategy, Tension},
+};
+
+use crate::{
+    curve::SpaceCurve,
+    diagnostics::Search,
+    error::{convergence_error, fit_error},
+    input::{Numbers, Points, numbers},
+    options::{self, CriteriaNames, Ends, Parameters, tolerances},
+    report::ShapeReport,
+    work::interruptible,
+};
+
+/// `tension`: one number, or one a point.
+pub(crate) struct NodalTension(Numbers);
+
+impl<'py> FromPyObject<'_, 'py> for NodalTension {
+    type Error = PyErr;
+
+    fn extract(object: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
+        numbers("tension", &object).map(Self)
+    }
+}
+
+impl NodalTension {
+    const NONE: Self = Self(Numbers::One(0.0));
+
+    fn tension(&self) -> Tension<'_> {
+        match &self.0 {
+            Numbers::One(value) => Tension::Uniform(*value),
+            Numbers::Many(values) => Tension::Nodes(values),
+        }
+    }
+}
+
+/// ν-spline: a curve with continuous tangent and curvature (G²) through points, with tension.
+///
+/// Parameters
+/// ----------
+/// points : array_like, shape (n, 3) or (n, 2)
+///     Points to interpolate, n ≥ 2; neighbours must differ. Planar points give a planar curve.
+/// parameters : {"chordal", "centripetal", "uniform"}, float or array_like, shape (n,)
+///     Parameters of the points: by name, as the exponent e of ``u[i+1] - u[i] = ‖points[i+1] -
+///     points[i]‖**e``, or strictly increasing numbers.
+/// boundary : {"zero-curvature", "natural", "periodic", "circular"} or Tangents
+///     Zero curvature at both ends (two names); closed data, whose last point is the first; end
+///     tangents of the circles through the first and the last three points; or given end tangents.
+/// tension : float or array_like, shape (n,)
+///     ν ≥ 0, without unit: 0 gives the C² cubic spline, and growing tension pulls the curve to the
+///     polygon. Of closed data, the first and the last entry must agree.
+///
+/// Raises
+/// ------
+/// ValueError
+///     If an argument holds unusable values: NaN, infinities, wrong shapes, repeated neighbours,
+///     parameters that do not increase, negative tension, unknown names. The message says where.
+/// TypeError
+///     If an argument is of a wrong kind.
+///
+/// See Also
+/// --------
+/// NuSpline.shape_preserving : finds the tension that the shape of the points needs.
+///
+/// Notes
+/// -----
+/// The tangents q solve the tridiagonal system (3.3)–(3.11) of Karavelas & Kaklis, *Spatial
+/// shape-preserving interpolation using ν-splines*, Numer. Algorithms 23 (2000) 217–250, for
+/// ``Q''(u+) - Q''(u-) = ν q / sqrt(h h')``. It is strictly diagonally dominant: the curve exists and
+/// is unique for every ν ≥ 0. Cost O(n).
+///
+/// Examples
+/// --------
+/// >>> import shapespline as ss
+/// >>> points = [[0, 0, 0], [4, 0, 0], [4.5, 0.5, 0], [4.5, 1, 0.5], [4.5, 1, 5]]
+/// >>> curve = ss.NuSpline(points, tension=[0, 3, 1, 3, 0])
+/// >>> curve
+/// <NuSpline: 5 points in space, tension up to 3 at 3 of them; ...>
+/// >>> curve(4.0)
+/// array([4., 0., 0.])
+#[pyclass(module = "shapespline", frozen, extends = SpaceCurve)]
+pub(crate) struct NuSpline;
+
+#[pymethods]
+impl NuSpline {
+    #[new]
+    #[pyo3(
+        signature = (
+            points,
+            parameters=Parameters::CHORDAL,
+            *,
+            boundary=Ends::ZERO_CURVATURE,
+            tension=NodalTension::NONE,
+        ),
+        text_signature = "(points, parameters='chordal', *, boundary='zero-curvature', tension=0.0)"
+    )]
+    fn new(
+        py: Python<'_>,
+        points: Points,
+        parameters: Parameters,
+        boundary: Ends,
+        tension: NodalTension,
+    ) -> PyResult<PyClassInitializer<Self>> {
+        let Points { points, dimension } = points;
+        let boundary = boundary.of(dimension)?;
+        // One pass after another along the points: nothing here runs on several threads.
+        let build = || -> Result<_, FitError> {
+            let polygon = DataPolygon::with_dimension(points, dimension, &parameters.0, boundary)?;
+            nu::NuSpline::new(polygon, tension.tension())
+        };
+        let curve = py.detach(build).map_err(fit_error)?;
+        let base = SpaceCurve::of(Arc::new(curve), None);
+        Ok(PyClassInitializer::from(base).add_subclass(Self))
+    }
+
+    /// The ν-spline whose tension keeps the shape of the points.
+    ///
+    /// Tension is raised at the nodes around each violation until no criterion fails; then, by
+    /// default, it is lowered again as far as the criteria allow.
+    ///
+    /// Parameters
+    /// ----------
+    /// points : array_like, shape (n, 3) or (n, 2)
+    ///     Points to interpolate, as for `NuSpline`.
+    /// parameters : {"chordal", "centripetal", "uniform"}, float or array_like, shape (n,)
+    ///     Parameters of the points, as for `NuSpline`.
+    /// boundary : {"zero-curvature", "natural", "periodic", "circular"} or Tangents
+    ///     End conditions, as for `NuSpline`.
+    /// criteria : str or iterable of str, optional
+    ///     What to keep: any of ``"convexity"``, ``"inflection"``, ``"torsion"``, ``"coplanarity"``
+    ///     and ``"collinearity"``; default all of them.
+    /// strategy : {"fairest", "growth", "nussp"}
+    ///     ``"nussp"`` adds ``step`` (the published algorithm); ``"growth"`` doubles the tension;
+    ///     ``"fairest"`` doubles and then lowers every run of tension until none can be lowered by
+    ///     more than 1 % without breaking a criterion.
+    /// step : float
+    ///     What ``"nussp"`` adds, and what doubling starts from; positive.
+    /// coplanarity, collinearity, tolerance : float
+    ///     As for the method ``check``.
+    /// max_iterations : int, optional
+    ///     Largest number of checks while tension is raised; default 10000 for ``"nussp"``, else 200.
+    ///
+    /// Returns
+    /// -------
+    /// NuSpline
+    ///     A curve that was checked completely and keeps every criterion; its ``diagnostics`` and
+    ///     ``history`` tell how it was found.
+    ///
+    /// Raises
+    /// ------
+    /// ConvergenceError
+    ///     If ``max_iterations`` is reached first; it carries the last curve and its report.
+    /// ValueError, TypeError
+    ///     As for `NuSpline`, and for options outside their ranges.
+    /// KeyboardInterrupt
+    ///     If Ctrl-C is pressed meanwhile.
+    ///
+    /// Notes
+    /// -----
+    /// Algorithm NUSSP, section 5.2 of Karavelas & Kaklis, Numer. Algorithms 23 (2000) 217–250, with
+    /// the index in (5.61)–(5.62) corrected; the growth and the relaxation are this library's. Cost: one
+    /// complete solve and check, O(n), and then what the violations need.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import shapespline as ss
+    /// >>> points = [[0, 0, 0], [4, 0, 0], [4.5, 0.5, 0], [4.5, 1, 0.5], [4.5, 1, 5]]
+    /// >>> curve = ss.NuSpline.shape_preserving(points, "uniform", strategy="nussp")
+    /// >>> curve.check().ok
+    /// True
+    /// >>> curve.tension
+    /// array([9.5, 9.5, 9.5, 9.5, 8. ])
+    #[classmethod]
+    #[pyo3(
+        signature = (
+            points,
+            parameters=Parameters::CHORDAL,
+            *,
+            boundary=Ends::ZERO_CURVATURE,
+            criteria=CriteriaNames::ALL,
+            strategy=Strategy::Fairest,
+            step=0.5,
+            coplanarity=0.2,
+            collinearity=0.2,
+            tolerance=1e-9,
+            max_iterations=None,
+        ),
+        text_signature = "($type, points, parameters='chordal', *, boundary='zero-curvature', \
+                          criteria=None, strategy='fairest', step=0.5, coplanarity=0.2, \
+                          collinearity=0.2, tolerance=1e-9, max_iterations=None)"
+    )]
+    // One argument a keyword: this is the signature that users see.
+    #[allow(clippy::too_many_arguments)]
+    fn shape_preserving(
+        class: &Bound<'_, PyType>,
+        points: Points,
+        parameters: Parameters,
+        boundary: Ends,
+        criteria: CriteriaNames,
+        #[pyo3(from_py_with = options::strategy)] strategy: Strategy,
+        #[pyo3(from_py_with = options::step)] step: f64,
+        #[pyo3(from_py_with = options::coplanarity)] coplanarity: f64,
+        #[pyo3(from_py_with = options::collinearity)] collinearity: f64,
+        #[pyo3(from_py_with = options::tolerance)] tolerance: f64,
+        #[pyo3(from_py_with = options::max_iterations)] max_iterations: Option<usize>,
+    ) -> PyResult<Py<PyAny>> {
+        let py = class.py();
+        let Points { points, dimension } = points;
+        let boundary = boundary.of(dimension)?;
+        let search = SearchOptions {
+            criteria: criteria.0,
+            tolerances: tolerances(coplanarity, collinearity, tolerance)?,
+            strategy,
+            step,
+            max_iterations,
+        };
+        let fit = interruptible(py, points.len(), |monitor| -> Result<_, FitError> {
+            let polygon = DataPolygon::with_dimension(points, dimension, &parameters.0, boundary)?;
+            nu::NuSpline::shape_preserving_with(polygon, &search, &mut |_| monitor())
+        })?
+        .map_err(fit_error)?;
+        finish(py, fit, &search)
+    }
+}
+
+/// The curve of a fit that ended well, or the exception that carries it.
+fn finish(py: Python<'_>, fit: Fit<nu::NuSpline>, options: &SearchOptions) -> PyResult<Py<PyAny>> {
+    let Fit { curve, outcome, report } = fit;
+    let (status, iterations) = (outcome.diagnostics.status, outcome.diagnostics.iterations);
+    let search = Search { diagnostics: outcome.diagnostics, history: outcome.history };
+    let base = SpaceCurve::of(Arc::new(curve), Some(search));
+    if status == Status::Solved {
+        return base.into_python(py);
+    }
+    let violations: Vec<String> = Criterion::ALL
+        .iter()
+        .map(|&criterion| (report.count(criterion).violated, criterion.name()))
+        .filter(|(violated, _)| *violated > 0)
+        .map(|(violated, name)| format!("{name} on {violated}"))
+        .collect();
+    let message = format!(
+        "the shape is not preserved after {iterations} iterations: of {} segments, {} violate it; \
+         raise max_iterations (this exception carries the last curve and its report)",
+        report.segments,
+        violations.join(", "),
+    );
+    let curve = Arc::clone(&base.curve);
+    let report = ShapeReport::of(report, curve, options.criteria, options.tolerances);
+    let report = Py::new(py, report)?.into_any();
+    Err(convergence_error(py, message, base.into_python(py)?, report))
+}

@@ -1,0 +1,230 @@
+//! Options that users write by name.
+
+use pyo3::{
+    exceptions::{PyTypeError, PyValueError},
+    prelude::*,
+};
+use shapespline::{
+    criteria::{Criteria, Criterion, Tolerances},
+    geometry::{Boundary, Dimension, Parametrization, Side},
+    nu::Strategy,
+};
+
+use crate::{
+    error::input_error,
+    input::{Numbers, count, float, kind, numbers, text},
+    tangents::Tangents,
+};
+
+/// The entry of a name, or a `ValueError` that lists the names.
+pub(crate) fn choose<T: Copy>(argument: &str, name: &str, options: &[(&str, T)]) -> PyResult<T> {
+    options.iter().find(|(known, _)| *known == name).map(|(_, value)| *value).ok_or_else(|| {
+        let names: Vec<String> = options.iter().map(|(known, _)| format!("'{known}'")).collect();
+        unknown(argument, name, &names.join(", "))
+    })
+}
+
+fn unknown(argument: &str, name: &str, options: &str) -> PyErr {
+    PyValueError::new_err(format!("{argument} must be one of {options}; got '{name}'"))
+}
+
+/// The name in a string argument.
+fn name(argument: &str, object: &Bound<'_, PyAny>) -> PyResult<String> {
+    text(object).ok_or_else(|| {
+        PyTypeError::new_err(format!("{argument} must be a string, got {}", kind(object)))
+    })
+}
+
+pub(crate) fn side(object: &Bound<'_, PyAny>) -> PyResult<Side> {
+    choose("side", &name("side", object)?, &[("left", Side::Left), ("right", Side::Right)])
+}
+
+pub(crate) fn strategy(object: &Bound<'_, PyAny>) -> PyResult<Strategy> {
+    choose("strategy", &name("strategy", object)?, &Strategy::NAMED)
+}
+
+/// What is even between samples.
+#[derive(Clone, Copy)]
+pub(crate) enum Spacing {
+    Parameter,
+    ArcLength,
+}
+
+pub(crate) fn by(object: &Bound<'_, PyAny>) -> PyResult<Spacing> {
+    let ways = [("parameter", Spacing::Parameter), ("arc-length", Spacing::ArcLength)];
+    choose("by", &name("by", object)?, &ways)
+}
+
+// Plain numbers: pyo3 tells a converter the value, not the argument it is for.
+
+pub(crate) fn nu(object: &Bound<'_, PyAny>) -> PyResult<usize> {
+    count("nu", 0, object)
+}
+pub(crate) fn n(object: &Bound<'_, PyAny>) -> PyResult<usize> {
+    count("n", 1, object)
+}
+pub(crate) fn max_iterations(object: &Bound<'_, PyAny>) -> PyResult<Option<usize>> {
+    if object.is_none() { Ok(None) } else { count("max_iterations", 1, object).map(Some) }
+}
+pub(crate) fn step(object: &Bound<'_, PyAny>) -> PyResult<f64> {
+    float("step", object)
+}
+pub(crate) fn coplanarity(object: &Bound<'_, PyAny>) -> PyResult<f64> {
+    float("coplanarity", object)
+}
+pub(crate) fn collinearity(object: &Bound<'_, PyAny>) -> PyResult<f64> {
+    float("collinearity", object)
+}
+pub(crate) fn tolerance(object: &Bound<'_, PyAny>) -> PyResult<f64> {
+    float("tolerance", object)
+}
+pub(crate) fn a(object: &Bound<'_, PyAny>) -> PyResult<Option<f64>> {
+    end("a", object)
+}
+pub(crate) fn b(object: &Bound<'_, PyAny>) -> PyResult<Option<f64>> {
+    end("b", object)
+}
+
+/// A finite end of an interval, or `None`.
+fn end(argument: &str, object: &Bound<'_, PyAny>) -> PyResult<Option<f64>> {
+    if object.is_none() {
+        return Ok(None);
+    }
+    let value = float(argument, object)?;
+    if value.is_finite() {
+        return Ok(Some(value));
+    }
+    Err(PyValueError::new_err(format!("{argument} must be finite, got {value}")))
+}
+
+/// `parameters`: a name, an exponent, or the parameters themselves.
+pub(crate) struct Parameters(pub(crate) Parametrization);
+
+impl Parameters {
+    pub(crate) const CHORDAL: Self = Self(Parametrization::Chordal);
+}
+
+impl<'py> FromPyObject<'_, 'py> for Parameters {
+    type Error = PyErr;
+
+    fn extract(object: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
+        if let Some(name) = text(&object) {
+            return match name.as_str() {
+                "uniform" => Ok(Self(Parametrization::Uniform)),
+                "chordal" => Ok(Self(Parametrization::Chordal)),
+                "centripetal" => Ok(Self(Parametrization::Centripetal)),
+                _ => Err(unknown(
+                    "parameters",
+                    &name,
+                    "'uniform', 'chordal', 'centripetal', an exponent, or an increasing array",
+                )),
+            };
+        }
+        Ok(Self(match numbers("parameters", &object)? {
+            Numbers::One(exponent) => Parametrization::Exponent(exponent),
+            Numbers::Many(values) => Parametrization::Given(values),
+        }))
+    }
+}
+
+/// `boundary`: a name or end tangents.
+#[derive(Clone, Copy)]
+pub(crate) enum Ends {
+    Named(Boundary),
+    Tangents(Tangents),
+}
+
+impl Ends {
+    pub(crate) const ZERO_CURVATURE: Self = Self::Named(Boundary::ZeroCurvature);
+
+    /// The boundary for points of a dimension.
+    pub(crate) fn of(self, dimension: Dimension) -> PyResult<Boundary> {
+        match self {
+            Self::Named(boundary) => Ok(boundary),
+            Self::Tangents(tangents) if tangents.dimension == dimension => Ok(tangents.boundary()),
+            Self::Tangents(tangents) => Err(PyValueError::new_err(format!(
+                "boundary: the tangents start and end have {} components, the points have {}",
+                tangents.dimension.len(),
+                dimension.len()
+            ))),
+        }
+    }
+}
+
+impl<'py> FromPyObject<'_, 'py> for Ends {
+    type Error = PyErr;
+
+    fn extract(object: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
+        const NAMES: [(&str, Boundary); 4] = [
+            ("zero-curvature", Boundary::ZeroCurvature),
+            ("natural", Boundary::ZeroCurvature),
+            ("periodic", Boundary::Periodic),
+            ("circular", Boundary::Circular),
+        ];
+        if let Some(name) = text(&object) {
+            return match NAMES.iter().find(|(known, _)| *known == name) {
+                Some((_, boundary)) => Ok(Self::Named(*boundary)),
+                None => Err(unknown(
+                    "boundary",
+                    &name,
+                    "'zero-curvature', 'natural', 'periodic', 'circular', Tangents(start, end)",
+                )),
+            };
+        }
+        match object.cast::<Tangents>() {
+            Ok(tangents) => Ok(Self::Tangents(*tangents.get())),
+            Err(_) => Err(PyTypeError::new_err(format!(
+                "boundary must be 'zero-curvature', 'natural', 'periodic', 'circular' or \
+                 Tangents(start, end), got {}",
+                kind(&object)
+            ))),
+        }
+    }
+}
+
+/// `criteria`: `None` for all, a name, or any iterable of names.
+pub(crate) struct CriteriaNames(pub(crate) Criteria);
+
+impl CriteriaNames {
+    pub(crate) const ALL: Self = Self(Criteria::ALL);
+
+    fn one(name: &str) -> PyResult<Criterion> {
+        Criterion::from_name(name).ok_or_else(|| {
+            let names: Vec<String> =
+                Criterion::ALL.iter().map(|c| format!("'{}'", c.name())).collect();
+            let names = names.join(", ") + " ('global-convexity' is still to come)";
+            unknown("criteria", name, &names)
+        })
+    }
+}
+
+impl<'py> FromPyObject<'_, 'py> for CriteriaNames {
+    type Error = PyErr;
+
+    fn extract(object: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
+        if object.is_none() {
+            return Ok(Self::ALL);
+        }
+        if let Some(name) = text(&object) {
+            return Ok(Self([Self::one(&name)?].into_iter().collect()));
+        }
+        let wrong = |given: &Bound<'_, PyAny>| {
+            PyTypeError::new_err(format!(
+                "criteria must be None, a name or an iterable of names, got {}",
+                kind(given)
+            ))
+        };
+        let mut criteria = Criteria::NONE;
+        for item in object.try_iter().map_err(|_| wrong(&object))? {
+            let item = item?;
+            let name = text(&item).ok_or_else(|| wrong(&item))?;
+            criteria = criteria.with(Self::one(&name)?);
+        }
+        Ok(Self(criteria))
+    }
+}
+
+/// The three tolerances, checked.
+pub(crate) fn tolerances(coplanarity: f64, collinearity: f64, zero: f64) -> PyResult<Tolerances> {
+    Tolerances { coplanarity, collinearity, zero }.validate().map_err(input_error)
+}

@@ -1,0 +1,47 @@
+//! Results as fresh arrays, without a copy where they are large.
+
+use numpy::{PyArray1, PyArrayDyn, PyArrayMethods};
+use pyo3::{exceptions::PyMemoryError, prelude::*};
+use shapespline::geometry::{DVec3, Dimension};
+
+pub(crate) type FloatArray<'py> = Bound<'py, PyArrayDyn<f64>>;
+
+/// Zeros to be filled, or `MemoryError`: a size that a user asks for must not end the process.
+pub(crate) fn zeros(count: usize, columns: usize) -> PyResult<Vec<f64>> {
+    let total = count.checked_mul(columns).filter(|n| *n <= isize::MAX as usize / 16);
+    let reserved = total.and_then(|n| Vec::<f64>::new().try_reserve_exact(n).ok().map(|()| n));
+    match reserved {
+        Some(n) => Ok(vec![0.0; n]),
+        None => Err(PyMemoryError::new_err(format!("no room for {count} × {columns} numbers"))),
+    }
+}
+
+/// One vector: shape (dim,).
+#[inline]
+pub(crate) fn vector(py: Python<'_>, v: DVec3, columns: usize) -> FloatArray<'_> {
+    PyArray1::from_slice(py, &v.to_array()[..columns]).to_dyn().clone()
+}
+
+/// Values in C order as an array of a shape.
+pub(crate) fn shaped<'py>(
+    py: Python<'py>,
+    values: Vec<f64>,
+    shape: &[usize],
+) -> PyResult<FloatArray<'py>> {
+    let array = PyArray1::from_vec(py, values);
+    if let [_] = shape { Ok(array.to_dyn().clone()) } else { array.reshape(shape) }
+}
+
+/// Vectors as an array of shape (n, dim).
+pub(crate) fn vectors<'py>(
+    py: Python<'py>,
+    vectors: &[DVec3],
+    dimension: Dimension,
+) -> PyResult<FloatArray<'py>> {
+    let columns = dimension.len();
+    let mut values = Vec::with_capacity(vectors.len() * columns);
+    for v in vectors {
+        values.extend_from_slice(&v.to_array()[..columns]);
+    }
+    shaped(py, values, &[vectors.len(), columns])
+}

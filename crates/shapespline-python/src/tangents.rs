@@ -1,0 +1,148 @@
+//! End tangents as a small value.
+
+use std::hash::{Hash, Hasher};
+
+use numpy::IntoPyArray;
+use pyo3::{exceptions::PyValueError, prelude::*};
+use shapespline::geometry::{Boundary, DVec3, Dimension};
+
+use crate::{
+    input::{Numbers, numbers},
+    output::{FloatArray, vector},
+};
+
+/// Given tangents at the two ends of a curve, for the argument ``boundary``.
+///
+/// Parameters
+/// ----------
+/// start, end : array_like, shape (3,) or (2,)
+///     Derivatives of the curve with respect to its parameter at the first and the last point, in
+///     units of the points over units of the parameter: any finite, non-zero vectors, with as many
+///     components as the points.
+///
+/// Raises
+/// ------
+/// ValueError
+///     If a vector is zero, not finite, of a wrong shape, or the two have different lengths.
+/// TypeError
+///     If a vector is not made of real numbers.
+///
+/// Notes
+/// -----
+/// Condition (3.8) of Karavelas & Kaklis, Numer. Algorithms 23 (2000): under tension ν the tangent of
+/// a ν-spline at the end is the given one divided by 1 + ν. Objects are immutable, and equal when their
+/// vectors are.
+///
+/// Examples
+/// --------
+/// >>> import shapespline as ss
+/// >>> ends = ss.Tangents([1, 0, 0], [0, 2, 0])
+/// >>> ends
+/// Tangents([1.0, 0.0, 0.0], [0.0, 2.0, 0.0])
+/// >>> curve = ss.NuSpline([[0, 0, 0], [1, 1, 0], [1, 2, 1]], boundary=ends)
+/// >>> curve.tangents[-1]
+/// array([0., 2., 0.])
+#[pyclass(module = "shapespline", frozen, eq, hash)]
+#[derive(Clone, Copy, PartialEq)]
+pub(crate) struct Tangents {
+    start: DVec3,
+    end: DVec3,
+    pub(crate) dimension: Dimension,
+}
+
+impl Hash for Tangents {
+    fn hash<H: Hasher>(&self, state: &mut H) {
+        for v in [self.start, self.end] {
+            // −0 equals 0, and adding 0 makes it so in bits too.
+            v.to_array().map(|x| (x + 0.0).to_bits()).hash(state);
+        }
+    }
+}
+
+impl Tangents {
+    pub(crate) fn new(start: DVec3, end: DVec3, dimension: Dimension) -> Self {
+        Self { start, end, dimension }
+    }
+
+    pub(crate) fn boundary(&self) -> Boundary {
+        Boundary::Tangents { start: self.start, end: self.end }
+    }
+}
+
+/// A tangent: its vector and the number of its components.
+fn tangent(argument: &str, object: &Bound<'_, PyAny>) -> PyResult<(DVec3, Dimension)> {
+    let (vector, dimension) = match numbers(argument, object)? {
+        Numbers::Many(v) if v.len() == 3 => (DVec3::from_slice(&v), Dimension::Three),
+        Numbers::Many(v) if v.len() == 2 => (DVec3::new(v[0], v[1], 0.0), Dimension::Two),
+        Numbers::Many(v) => {
+            let text = format!("{argument} must have 2 or 3 components, got {}", v.len());
+            return Err(PyValueError::new_err(text));
+        }
+        Numbers::One(value) => {
+            let text = format!("{argument} must be a vector of 2 or 3 components, got {value}");
+            return Err(PyValueError::new_err(text));
+        }
+    };
+    if let Some(i) = vector.to_array().iter().position(|x| !x.is_finite()) {
+        let text = format!("{argument}[{i}] must be finite, got {}", vector.to_array()[i]);
+        return Err(PyValueError::new_err(text));
+    }
+    if vector == DVec3::ZERO {
+        return Err(PyValueError::new_err(format!("{argument} must not be the zero vector")));
+    }
+    Ok((vector, dimension))
+}
+
+#[pymethods]
+impl Tangents {
+    #[new]
+    fn from_python(start: &Bound<'_, PyAny>, end: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let (start, dimension) = tangent("start", start)?;
+        let (end, other) = tangent("end", end)?;
+        if dimension != other {
+            return Err(PyValueError::new_err(format!(
+                "start and end must have the same number of components, got {} and {}",
+                dimension.len(),
+                other.len()
+            )));
+        }
+        Ok(Self { start, end, dimension })
+    }
+
+    /// The tangent at the first point, shape (dim,); a fresh array.
+    #[getter]
+    fn start<'py>(&self, py: Python<'py>) -> FloatArray<'py> {
+        vector(py, self.start, self.dimension.len())
+    }
+
+    /// The tangent at the last point, shape (dim,); a fresh array.
+    #[getter]
+    fn end<'py>(&self, py: Python<'py>) -> FloatArray<'py> {
+        vector(py, self.end, self.dimension.len())
+    }
+
+    fn __repr__(&self) -> String {
+        let columns = self.dimension.len();
+        let [start, end] = [self.start, self.end].map(|v| v.to_array()[..columns].to_vec());
+        format!("Tangents({start:?}, {end:?})")
+    }
+
+    #[allow(clippy::type_complexity)]
+    fn __reduce__<'py>(
+        slf: &Bound<'py, Self>,
+    ) -> (Bound<'py, PyAny>, (Bound<'py, PyAny>, Bound<'py, PyAny>)) {
+        let (py, this) = (slf.py(), slf.get());
+        let columns = this.dimension.len();
+        let [start, end] = [this.start, this.end]
+            .map(|v| v.to_array()[..columns].to_vec().into_pyarray(py).into_any());
+        (slf.get_type().into_any(), (start, end))
+    }
+
+    fn __copy__(slf: Py<Self>) -> Py<Self> {
+        slf
+    }
+
+    fn __deepcopy__(slf: Py<Self>, _memo: &Bound<'_, PyAny>) -> Py<Self> {
+        slf
+    }
+}
