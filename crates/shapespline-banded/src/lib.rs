@@ -1,1 +1,3 @@
 //! placeholder
+pub mod block_tridiagonal;
+pub mod box_qp;
