@@ -1,7 +1,7 @@
 //! Symmetric positive definite block-tridiagonal systems with 2×2 blocks, eliminated while they are assembled.
 //!
 //! An interior-point step over a chain of nodes with two unknowns each needs one such system. The matrix is
-//! never stored: the caller pushes node after node, the eliminated rows are kept (six numbers a node), and one
+//! never stored: the caller pushes node after node, the eliminated rows are kept (nine numbers a node), and one
 //! backward sweep gives the solution. O(n) time and memory.
 
 /// The elimination of a block-tridiagonal system `A x = r` with symmetric positive definite `A`, node by node.
@@ -24,11 +24,14 @@
 pub struct BlockElimination {
     /// `D'⁻¹ O` of every node, row by row.
     w: Vec<[f64; 4]>,
+    /// `1/a`, `b/a`, `1/e` of every diagonal block's factors.
+    pivots: Vec<[f64; 3]>,
     /// `D'⁻¹ r'` of every node, later the solution.
     g: Vec<[f64; 2]>,
     /// What the previous node subtracts from the next diagonal block and right-hand side.
     carry_diagonal: [f64; 3],
     carry_rhs: [f64; 2],
+    quadratic: f64,
     repaired: usize,
 }
 
@@ -36,15 +39,22 @@ impl BlockElimination {
     /// An empty system with room for `nodes` nodes.
     #[must_use]
     pub fn with_capacity(nodes: usize) -> Self {
-        Self { w: Vec::with_capacity(nodes), g: Vec::with_capacity(nodes), ..Self::default() }
+        Self {
+            w: Vec::with_capacity(nodes),
+            pivots: Vec::with_capacity(nodes),
+            g: Vec::with_capacity(nodes),
+            ..Self::default()
+        }
     }
 
     /// Forget the system, keep the memory.
     pub fn clear(&mut self) {
         self.w.clear();
+        self.pivots.clear();
         self.g.clear();
         self.carry_diagonal = [0.0; 3];
         self.carry_rhs = [0.0; 2];
+        self.quadratic = 0.0;
         self.repaired = 0;
     }
 
@@ -53,6 +63,12 @@ impl BlockElimination {
     #[must_use]
     pub fn repaired(&self) -> usize {
         self.repaired
+    }
+
+    /// `rᵀ A⁻¹ r` of the system pushed so far: the Newton decrement when r is a negative gradient.
+    #[must_use]
+    pub fn quadratic(&self) -> f64 {
+        self.quadratic
     }
 
     /// Append the next node: diagonal block `[D₀₀, D₀₁, D₁₁]`, coupling to the following node
@@ -84,6 +100,7 @@ impl BlockElimination {
         let [w00, w10] = solve(coupling[0], coupling[2]);
         let [w01, w11] = solve(coupling[1], coupling[3]);
         let g = solve(r0, r1);
+        self.quadratic += r0 * g[0] + r1 * g[1];
         self.carry_diagonal = [
             coupling[0] * w00 + coupling[2] * w10,
             coupling[0] * w01 + coupling[2] * w11,
@@ -92,18 +109,39 @@ impl BlockElimination {
         self.carry_rhs =
             [coupling[0] * g[0] + coupling[2] * g[1], coupling[1] * g[0] + coupling[3] * g[1]];
         self.w.push([w00, w01, w10, w11]);
+        self.pivots.push([inverse_a, l, inverse_e]);
         self.g.push(g);
     }
 
-    /// The solution of the system pushed so far, a pair a node. O(n); the system must be cleared before reuse.
+    /// The solution of the system pushed so far, a pair a node. O(n). Call it once; for another right-hand side
+    /// there is [`BlockElimination::solve_again`].
     pub fn solve(&mut self) -> &[[f64; 2]] {
+        self.backward();
+        &self.g
+    }
+
+    /// The solution for another right-hand side, given node by node in order. O(n), no factorisation.
+    pub fn solve_again(&mut self, mut rhs: impl FnMut(usize) -> [f64; 2]) -> &[[f64; 2]] {
+        let mut carry = [0.0; 2];
+        for (i, ((g, w), pivot)) in self.g.iter_mut().zip(&self.w).zip(&self.pivots).enumerate() {
+            let r = rhs(i);
+            let (p, q) = (r[0] - carry[0], r[1] - carry[1]);
+            let second = (q - pivot[1] * p) * pivot[2];
+            *g = [p * pivot[0] - pivot[1] * second, second];
+            // Oᵀ D'⁻¹ r' = (D'⁻¹ O)ᵀ r'.
+            carry = [w[0] * p + w[2] * q, w[1] * p + w[3] * q];
+        }
+        self.backward();
+        &self.g
+    }
+
+    fn backward(&mut self) {
         let mut next = [0.0; 2];
         for (g, w) in self.g.iter_mut().zip(&self.w).rev() {
             g[0] -= w[0] * next[0] + w[1] * next[1];
             g[1] -= w[2] * next[0] + w[3] * next[1];
             next = *g;
         }
-        &self.g
     }
 }
 
@@ -130,6 +168,7 @@ mod tests {
             [0.7 * s * u, -0.4 * s * v, 0.3 * t * u, 0.6 * t * v]
         };
         let mut system = BlockElimination::with_capacity(n);
+        let mut rhs = Vec::new();
         for i in 0..n {
             let (d, o) = (diagonal(i), coupling(i));
             let (p, q) = (planted(i, 0), planted(i, 1));
@@ -145,10 +184,20 @@ mod tests {
                 r[0] += m[0] * pp + m[2] * qp;
                 r[1] += m[1] * pp + m[3] * qp;
             }
+            rhs.push(r);
             system.push(d, o, r);
         }
         assert_eq!(system.repaired(), 0);
-        for (i, x) in system.solve().iter().enumerate() {
+        let quadratic = system.quadratic();
+        let solution = system.solve().to_vec();
+        let direct: f64 =
+            solution.iter().zip(&rhs).map(|(x, r)| x[0] * r[0] + x[1] * r[1]).sum();
+        assert!((quadratic - direct).abs() <= 1e-12 * direct);
+        let again = system.solve_again(|i| rhs[i]).to_vec();
+        for (a, b) in again.iter().flatten().zip(solution.iter().flatten()) {
+            assert!((a - b).abs() <= 1e-11 * b.abs());
+        }
+        for (i, x) in solution.iter().enumerate() {
             for (k, value) in x.iter().enumerate() {
                 let error = (value - planted(i, k)).abs() * scale(i, k);
                 assert!(error < 1e-12, "node {i} unknown {k}: error {error}");
