@@ -25,7 +25,7 @@ const MAX_STEPS: usize = 250;
 /// Share of the way to the boundary that a step may go.
 const FRACTION: f64 = 0.98;
 /// Relative duality gap at which the iteration ends.
-const GAP: f64 = 5e-4;
+const GAP: f64 = 1e-8;
 /// Barrier parameter at the start, in units of the segments' energy scales.
 const START: f64 = 10.0;
 /// The same after a refinement, from a point this far on the way back to the interior one.
@@ -55,6 +55,11 @@ pub(crate) struct Optimum {
 
 /// Minimise.
 pub(crate) fn optimise(data: &Data, fairness: Fairness) -> Optimum {
+    if data.len() == 1 {
+        // Two points: the line, to the last bit.
+        let d = vec![data.delta[0]; 2];
+        return Optimum { d, s: vec![0.0; 2], steps: 1, converged: true, ..Optimum::default() };
+    }
     let mut problem = Problem::new(data, fairness);
     let mut optimum = problem.run();
     optimum.d = problem.v.iter().map(|v| v[0]).collect();

@@ -122,6 +122,9 @@ impl MonotoneQuartic {
         }
         let spline =
             MonotoneSpline::quartic(&data, x.to_vec(), y.to_vec(), &d, e, options.extrapolate);
+        if let Some(i) = spline.d.iter().position(|d| !d.is_finite()) {
+            return Err(crate::data::out_of_range("secant slope", "y", i, y[i]));
+        }
         Ok(Self { spline, alpha, beta, scale })
     }
 

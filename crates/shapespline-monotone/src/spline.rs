@@ -346,28 +346,48 @@ impl MonotoneSpline {
         }
     }
 
+    /// `h²` times the second derivative's Bernstein coefficients, in units of y: no overflow on the way.
+    fn second_coefficients(&self, i: usize) -> ([f64; 4], usize) {
+        let h = self.x[i + 1] - self.x[i];
+        let dy = self.y[i + 1] - self.y[i];
+        let (m0, m1) = (h * self.d[i], h * self.d[i + 1]);
+        match &self.kind {
+            Kind::Quartic { e } => {
+                let (b, c) = (2.0 * dy - m0 + e[i], 2.0 * dy - m1 - e[i]);
+                ([3.0 * (b - m0), 3.0 * (c - b), 3.0 * (m1 - c), 0.0], 2)
+            }
+            Kind::Quintic { s } => {
+                let (k0, k1) = (h * (h * s[i]), h * (h * s[i + 1]));
+                let (b, d) = (m0 + 0.25 * k0, m1 - 0.25 * k1);
+                let c = 5.0 * dy - ((m0 + b) + (d + m1));
+                ([k0, 4.0 * (c - b), 4.0 * (d - c), k1], 3)
+            }
+        }
+    }
+
     /// Derivative of order ≥ 1 of piece i, inside or outside its segment.
     fn derivative_at(&self, i: usize, x: f64, nu: usize) -> f64 {
         let h = self.x[i + 1] - self.x[i];
         let t = (x - self.x[i]) / h;
-        let (c, degree) = self.slope_coefficients(i);
         if nu == 1 {
+            let (c, degree) = self.slope_coefficients(i);
             return bernstein::value(&c[..=degree], t);
         }
-        if nu > degree + 1 {
+        if nu > self.degree() {
             return 0.0;
         }
-        let mut second = bernstein::derivative(&c[..=degree]);
-        second.iter_mut().for_each(|v| *v /= h);
-        if let Kind::Quintic { s } = &self.kind {
-            // To the last bit, so that the neighbours agree.
-            (second[0], second[3]) = (s[i], s[i + 1]);
+        if let (Kind::Quintic { s }, 2) = (&self.kind, nu) {
+            // To the last bit, so that neighbours agree.
+            if t == 0.0 || t == 1.0 {
+                return s[i + usize::from(t == 1.0)];
+            }
         }
+        let (c, degree) = self.second_coefficients(i);
+        let mut c = c[..=degree].to_vec();
         for _ in 2..nu {
-            second = bernstein::derivative(&second);
-            second.iter_mut().for_each(|v| *v /= h);
+            c = bernstein::derivative(&c);
         }
-        bernstein::value(&second, t)
+        (0..nu).fold(bernstein::value(&c, t), |v, _| v / h)
     }
 
     /// The derivative of order `nu` as a function. O(N).
@@ -382,7 +402,22 @@ impl MonotoneSpline {
             c.extend_from_slice(&piece[..=degree]);
         }
         let mode = self.extrapolate.derivative();
-        PiecewisePolynomial::new(self.x.clone(), self.degree() - 1, c, mode).derivative(nu - 1)
+        if nu == 1 {
+            return PiecewisePolynomial::new(self.x.clone(), self.degree() - 1, c, mode);
+        }
+        c.clear();
+        for i in 0..self.records.len() {
+            let h = self.x[i + 1] - self.x[i];
+            let (piece, degree) = self.second_coefficients(i);
+            c.extend(piece[..=degree].iter().map(|v| v / h / h));
+            if let Kind::Quintic { s } = &self.kind {
+                // To the last bit, so that neighbours agree.
+                let end = c.len() - 1;
+                (c[end - 3], c[end]) = (s[i], s[i + 1]);
+            }
+        }
+        let mode = mode.derivative();
+        PiecewisePolynomial::new(self.x.clone(), self.degree() - 2, c, mode).derivative(nu - 2)
     }
 
     /// An antiderivative of order `nu`, zero at the first knot. O(N).

@@ -54,8 +54,8 @@ fn sweep(sets: usize, queries: usize, seed: u64) {
             4 => 2 + rng.index(999),
             _ => 2 + rng.index(120),
         };
-        let (x, mut y) =
-            monotone(&mut rng, n, [0.0, 3.0, 6.0][case % 3], 12.0 * rng.next(), 0.15);
+        let decades = 12.0 * rng.next();
+        let (x, mut y) = monotone(&mut rng, n, [0.0, 3.0, 6.0][case % 3], decades, 0.15);
         let sign = if case % 4 == 3 { -1.0 } else { 1.0 };
         y.iter_mut().for_each(|v| *v *= sign);
         let quartic = MonotoneQuartic::new(&x, &y, &QuarticOptions::default()).unwrap();

@@ -94,7 +94,7 @@ fn lines_are_lines() {
         assert!(f.bending_energy() < 1e-25);
         assert!((f.value(1.0) - 1.0).abs() < 1e-15);
         let two = quintic(&x[..2], &y[..2], slopes);
-        assert_eq!(two.slopes(), [-2.0, -2.0]);
+        assert!(two.slopes().iter().all(|d| (d + 2.0).abs() < 1e-15));
     }
     let q = MonotoneQuartic::new(&x, &y, &QuarticOptions::default()).unwrap();
     assert!((q.value(5.0) + 7.0).abs() < 1e-14);
@@ -116,7 +116,7 @@ fn continuity() {
         for f in fits {
             let orders = if f.degree() == 5 { 2 } else { 1 };
             for nu in 0..=orders {
-                let p = f.to_piecewise().derivative(nu);
+                let p = f.derivative(nu);
                 let m = p.degree() + 1;
                 let c = p.coefficients();
                 for i in 1..n - 1 {
