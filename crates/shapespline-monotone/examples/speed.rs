@@ -24,7 +24,7 @@ fn main() {
         (state >> 11) as f64 / (1u64 << 53) as f64
     };
     println!("{:>8} {:>14} {:>14} {:>14}   build, ns a point", "N", "quartic", "fritsch-b.", "optimal");
-    for n in [5usize, 20, 1000, 10_000, 1_000_000] {
+    for n in [5usize, 20, 1000, 10_000] {
         let (mut x, mut y) = (vec![0.0], vec![0.0]);
         for k in 1..n {
             x.push(x[k - 1] + 0.1 + next());

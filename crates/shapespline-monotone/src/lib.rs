@@ -52,6 +52,7 @@ pub mod second_opinion;
 mod slopes;
 mod spline;
 mod subdivision;
+mod windows;
 
 pub use bezier_like::BezierLike;
 pub use energy::Fairness;

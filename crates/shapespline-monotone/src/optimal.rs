@@ -15,7 +15,7 @@
 
 use crate::data::Data;
 use crate::energy::{self, Fairness, HESSIAN, is_flat};
-use crate::quartic_form::{derivative, dot, least};
+use crate::quartic_form::{derivative, least};
 use crate::slopes::sign;
 use crate::subdivision::{Conditions, DEEPEST, Part, level, table};
 use shapespline_banded::block_tridiagonal::BlockElimination;
@@ -101,66 +101,156 @@ pub(crate) fn coefficients(h: f64, delta: f64, v0: [f64; 2], v1: [f64; 2]) -> [f
     )
 }
 
+/// The unconstrained optimum, if it is monotone.
+pub(crate) fn unconstrained(data: &Data, fairness: Fairness) -> Option<Optimum> {
+    let mut problem = Problem::new(data, fairness);
+    problem.solve_unconstrained().then(|| Optimum {
+        d: problem.v.iter().map(|v| v[0]).collect(),
+        s: problem.v.iter().map(|v| v[1]).collect(),
+        steps: 1,
+        converged: true,
+        ..Optimum::default()
+    })
+}
+
+/// A segment's constants: the factors 1/Δ and h/(4Δ) from (d, s) to the dimensionless (1 + a, b), its energy weight
+/// over 35 and the weight of its barrier; all 0 for a flat one.
+#[derive(Debug, Clone, Copy)]
+struct Segment {
+    a: f64,
+    b: f64,
+    e: f64,
+    w: f64,
+}
+
+/// A node: what is free, and its own condition d ≥ 0 (or, at a turn, the sign of s).
+#[derive(Debug, Clone, Copy)]
+struct Node {
+    free: (bool, bool),
+    /// The unknown the condition is on, 2 for none.
+    k: usize,
+    /// sign/size of the condition, so that it reads unit·v ≥ 0.
+    unit: f64,
+    w: f64,
+    lambda: f64,
+    z: f64,
+    az: f64,
+    dl: f64,
+}
+
+/// The conditions of one part, coefficients 1…4: its first is the part's before, the segment's first the node's.
+#[derive(Debug, Clone, Copy)]
+struct Block {
+    part: Part,
+    /// 1 for a condition, 0 for a coefficient that is none (the segment's last, and those a flat fixes at 0).
+    on: [f64; 4],
+    /// Multiplier over barrier weight, slack, its reciprocal, affine change, change of the multiplier.
+    lambda: [f64; 4],
+    z: [f64; 4],
+    iz: [f64; 4],
+    az: [f64; 4],
+    dl: [f64; 4],
+}
+
 struct Problem<'a> {
     data: &'a Data,
-    fairness: Fairness,
     table: &'static [Conditions],
     /// Unknowns (d, s).
     v: Vec<[f64; 2]>,
-    /// Multipliers of the node conditions over the barrier weight.
-    node: Vec<f64>,
-    /// Parts of all segments in order; segment i owns `parts[first[i]..first[i+1]]`.
-    parts: Vec<Part>,
+    segments: Vec<Segment>,
+    nodes: Vec<Node>,
+    /// Conditions of all segments in order; segment i owns `blocks[first[i]..first[i+1]]`.
+    blocks: Vec<Block>,
     first: Vec<u32>,
-    /// Multipliers of coefficients 1…4 of every part over the barrier weight.
-    lambda: Vec<[f64; 4]>,
     system: BlockElimination,
     rhs: Vec<[f64; 2]>,
+    /// −∇E at the current point.
+    descent: Vec<[f64; 2]>,
     mu: f64,
-    /// By-products of the last assembly.
-    energy: f64,
+    /// Σ of barrier weights over all conditions.
     weights: f64,
-    complementarity: f64,
+    energy: f64,
 }
 
 impl<'a> Problem<'a> {
     fn new(data: &'a Data, fairness: Fairness) -> Self {
         let n = data.len();
+        let delta = &data.delta;
+        let scale: Vec<f64> = (0..n)
+            .map(|i| {
+                if is_flat(delta[i]) {
+                    f64::INFINITY
+                } else {
+                    energy::weight(fairness, data.h[i], delta[i])
+                }
+            })
+            .collect();
+        let segments = (0..n)
+            .map(|i| {
+                if is_flat(delta[i]) {
+                    return Segment { a: 0.0, b: 0.0, e: 0.0, w: 0.0 };
+                }
+                let a = 1.0 / delta[i];
+                // The least energy scale around: the barrier of a steep segment must not drown a gentle
+                // neighbour's energy.
+                let w = scale[i.max(1) - 1].min(scale[i]).min(scale[(i + 1).min(n - 1)]);
+                Segment { a, b: 0.25 * data.h[i] * a, e: scale[i] / 35.0, w }
+            })
+            .collect();
+        let nodes = (0..=n)
+            .map(|i| {
+                let (l, r) = (i.max(1) - 1, i.min(n - 1));
+                let s = sign(delta[l]);
+                let free = free(delta, i);
+                let (k, unit) = match free {
+                    (true, _) => (0, s / delta[l].abs().min(delta[r].abs())),
+                    (false, true) => {
+                        let bend = (delta[l].abs() / data.h[l]).min(delta[r].abs() / data.h[r]);
+                        (1, -s / bend)
+                    }
+                    (false, false) => (2, 0.0),
+                };
+                let w = scale[l].min(scale[r]);
+                Node { free, k, unit, w, lambda: 0.0, z: 1.0, az: 0.0, dl: 0.0 }
+            })
+            .collect();
         Self {
             data,
-            fairness,
             table: table(),
             v: vec![[0.0; 2]; n + 1],
-            node: Vec::new(),
-            parts: Vec::new(),
-            first: Vec::new(),
-            lambda: Vec::new(),
+            segments,
+            nodes,
+            blocks: Vec::new(),
+            first: vec![0; n + 1],
             system: BlockElimination::with_capacity(n + 1),
-            rhs: Vec::new(),
+            rhs: vec![[0.0; 2]; n + 1],
+            descent: vec![[0.0; 2]; n + 1],
             mu: 0.0,
-            energy: 0.0,
             weights: 0.0,
-            complementarity: 0.0,
+            energy: 0.0,
         }
+    }
+
+    /// The energy's own minimiser, and whether it is monotone.
+    fn solve_unconstrained(&mut self) -> bool {
+        self.assemble();
+        self.v.copy_from_slice(self.system.solve());
+        (0..self.data.len()).all(|i| self.is_monotone(i))
     }
 
     fn run(&mut self) -> Optimum {
         let n = self.data.len();
         let mut outcome = Optimum { steps: 1, ..Optimum::default() };
-        self.assemble();
-        self.v.copy_from_slice(self.system.solve());
-        if (0..n).all(|i| self.is_monotone(i)) {
+        if self.solve_unconstrained() {
             outcome.converged = true;
             return outcome;
         }
         for i in 0..=n {
             self.v[i] = interior(self.data, i);
         }
-        self.mu = START;
-        self.node = vec![f64::NAN; n + 1];
-        self.parts = vec![1; n];
         self.first = (0..=n as u32).collect();
-        self.lambda = vec![[f64::NAN; 4]; n];
+        self.blocks = (0..n).map(|i| self.block(i, 1)).collect();
+        self.enter(START);
         let mut direction: Vec<[f64; 2]> = vec![[0.0; 2]; n + 1];
         let mut residual = 1.0;
         let mut phase = 0;
@@ -170,51 +260,128 @@ impl<'a> Problem<'a> {
             self.assemble();
             let mut system = std::mem::take(&mut self.system);
             direction.copy_from_slice(system.solve());
-            let affine = self.look(&direction, None);
+            let affine = self.predict(&direction);
             let alpha = affine.length.min(1.0);
-            let ahead = affine.products[0] + alpha * (affine.products[1] + alpha * affine.products[2]);
-            let sigma = (ahead / affine.products[0]).max(0.0);
-            let sigma = (sigma * sigma * sigma).max(1e-6);
-            let mu = sigma * affine.products[0] / self.weights;
+            let now = affine.products[0];
+            let ahead = now + alpha * (affine.products[1] + alpha * affine.products[2]);
+            let sigma = (ahead / now).max(0.0);
+            let mu = (sigma * sigma * sigma).max(1e-6) * now / self.weights;
             // Corrector: towards σμ, with the predictor's second-order term, on the same factors.
-            self.corrector_rhs(&mut direction, mu);
+            self.corrector(mu);
             let correction = system.solve_again(|i| self.rhs[i]);
-            let actual = self.look(correction, Some((&direction, mu)));
+            let actual = self.correct(correction, mu);
             let alpha = (FRACTION * actual.length).min(1.0);
-            self.advance(correction, &direction, mu, alpha);
+            self.advance(correction, alpha);
             self.system = system;
             residual *= 1.0 - alpha;
             let [a, b, c] = actual.products;
             let after = a + alpha * (b + alpha * c);
             outcome.gap = after / self.energy;
             self.mu = after / self.weights;
-            if outcome.gap <= GAP && residual < 1e-3 {
-                outcome.converged = true;
-                break;
-            }
             if phase < PHASES && residual < 0.1 && outcome.gap < COARSE {
                 phase += 1;
                 residual = 1.0;
-                self.restart();
+                if self.restart() {
+                    continue;
+                }
+                phase = PHASES;
+            }
+            if outcome.gap <= GAP && residual < 1e-3 {
+                outcome.converged = true;
+                break;
             }
         }
         outcome.active = self.active();
         outcome
     }
 
+    /// A fresh block for part `part` of segment i.
+    fn block(&self, i: usize, part: Part) -> Block {
+        let mut on = [1.0; 4];
+        let l = level(part);
+        if part == 1 << l && !self.nodes[i].free.1 {
+            on[0] = 0.0;
+        }
+        if part + 1 == 2 << l {
+            on[3] = 0.0;
+            if !self.nodes[i + 1].free.1 {
+                on[2] = 0.0;
+            }
+        }
+        if self.segments[i].e == 0.0 {
+            on = [0.0; 4];
+        }
+        let zero = [0.0; 4];
+        Block { part, on, lambda: zero, z: [1.0; 4], iz: [1.0; 4], az: zero, dl: zero }
+    }
+
+    /// Put every condition on the central path of barrier parameter μ.
+    fn enter(&mut self, mu: f64) {
+        self.mu = mu;
+        self.weights = 0.0;
+        for (node, v) in self.nodes.iter_mut().zip(&self.v) {
+            if node.k < 2 {
+                node.z = node.unit * v[node.k];
+                node.lambda = mu / node.z;
+                self.weights += node.w;
+            }
+        }
+        for i in 0..self.data.len() {
+            let segment = self.segments[i];
+            let c = segment.bernstein(self.v[i], self.v[i + 1]);
+            for block in &mut self.blocks[self.first[i] as usize..self.first[i + 1] as usize] {
+                let z = values(&self.table[usize::from(block.part)], &c);
+                for j in 0..4 {
+                    block.lambda[j] = if block.on[j] > 0.0 { mu / z[j] } else { 0.0 };
+                    self.weights += segment.w * block.on[j];
+                }
+            }
+        }
+    }
+
     /// Halve where conditions are near and go on from a point between the current and the interior one: as fresh
-    /// conditions have no multipliers, a start at the boundary would crawl.
-    fn restart(&mut self) {
+    /// conditions have no multipliers, a start at the boundary would crawl. False when nothing is near.
+    fn restart(&mut self) -> bool {
+        let before = self.blocks.len();
         for _ in 0..LEVELS {
             self.refine();
+        }
+        if self.blocks.len() == before {
+            return false;
         }
         for (i, v) in self.v.iter_mut().enumerate() {
             let b = interior(self.data, i);
             *v = [v[0] + RESTART.1 * (b[0] - v[0]), v[1] + RESTART.1 * (b[1] - v[1])];
         }
-        self.lambda.iter_mut().for_each(|l| *l = [f64::NAN; 4]);
-        self.node.iter_mut().for_each(|l| *l = f64::NAN);
-        self.mu = RESTART.0;
+        self.enter(RESTART.0);
+        true
+    }
+
+    /// Halve the parts with a condition near its limit.
+    fn refine(&mut self) {
+        let n = self.data.len();
+        let mut blocks = Vec::with_capacity(2 * self.blocks.len());
+        for i in 0..n {
+            let c = self.segments[i].bernstein(self.v[i], self.v[i + 1]);
+            let range = self.first[i] as usize..self.first[i + 1] as usize;
+            self.first[i] = blocks.len() as u32;
+            for p in range {
+                let block = &self.blocks[p];
+                let part = block.part;
+                let near = NEAR / f64::from(1u32 << level(part));
+                let z = values(&self.table[usize::from(part)], &c);
+                let close =
+                    level(part) < DEEPEST && (0..4).any(|j| block.on[j] > 0.0 && z[j] < near);
+                if close {
+                    blocks.push(self.block(i, 2 * part));
+                    blocks.push(self.block(i, 2 * part + 1));
+                } else {
+                    blocks.push(*block);
+                }
+            }
+        }
+        self.first[n] = blocks.len() as u32;
+        self.blocks = blocks;
     }
 
     /// Whether a segment of the unconstrained optimum is monotone.
@@ -225,113 +392,39 @@ impl<'a> Problem<'a> {
         }
         let c = coefficients(h, delta, self.v[i], self.v[i + 1]);
         // Where the slope is fixed at 0 the derivative must leave it in the right direction.
-        let leaves = |node: usize, inner: f64| free(&self.data.delta, node) == (true, true) || inner >= 0.0;
+        let leaves = |node: usize, inner: f64| self.nodes[node].free.0 || inner >= 0.0;
         least(&c) >= 0.0 && leaves(i, c[1]) && leaves(i + 1, c[3])
     }
 
-    /// Energy scale of a segment; flats do not count.
-    #[inline]
-    fn scale(&self, i: usize) -> f64 {
-        let delta = self.data.delta[i];
-        if is_flat(delta) { f64::INFINITY } else { energy::weight(self.fairness, self.data.h[i], delta) }
-    }
-
-    /// The barrier weight of a segment's conditions: the least energy scale around, so that the barrier of a steep
-    /// segment does not drown a gentle neighbour's energy.
-    #[inline]
-    fn barrier(&self, i: usize) -> f64 {
-        let mut barrier = self.scale(i);
-        if i > 0 {
-            barrier = barrier.min(self.scale(i - 1));
-        }
-        if i + 1 < self.data.len() {
-            barrier = barrier.min(self.scale(i + 1));
-        }
-        barrier
-    }
-
-    /// The condition a node contributes: d ≥ 0 where the slope is free, the turn's sign of s where only the second
-    /// derivative is. (index of the unknown, sign/unit, weight).
-    #[inline]
-    fn node_condition(&self, i: usize) -> Option<(usize, f64, f64)> {
-        let delta = &self.data.delta;
-        let (slope, second) = free(delta, i);
-        if !second {
-            return None;
-        }
-        let (l, r) = (i.max(1) - 1, i.min(delta.len() - 1));
-        let s = sign(delta[l]);
-        let weight = self.scale(l).min(self.scale(r));
-        Some(if slope {
-            (0, s / delta[l].abs().min(delta[r].abs()), weight)
-        } else {
-            let h = &self.data.h;
-            (1, -s / (delta[l].abs() / h[l]).min(delta[r].abs() / h[r]), weight)
-        })
-    }
-
-    /// Bernstein coefficients of a segment's derivative over Δ; small ones without cancellation.
-    #[inline]
-    fn bernstein(a: f64, b: f64, v0: [f64; 2], v1: [f64; 2]) -> [f64; 5] {
-        let (c0, c4) = (a * v0[0], a * v1[0]);
-        let (c1, c3) = (c0 + b * v0[1], c4 - b * v1[1]);
-        [c0, c1, 5.0 - ((c0 + c1) + (c3 + c4)), c3, c4]
-    }
-
-    /// Which of coefficients 1…4 of a part are conditions: not the segment's last one (the node's), and none that a
-    /// flat neighbour fixes at 0.
-    #[inline]
-    fn mask(&self, i: usize, part: Part) -> [bool; 4] {
-        let l = level(part);
-        let index = part - (1 << l);
-        let delta = &self.data.delta;
-        let mut mask = [true; 4];
-        if index == 0 && !free(delta, i).1 {
-            mask[0] = false;
-        }
-        if index + 1 == 1 << l {
-            mask[3] = false;
-            if !free(delta, i + 1).1 {
-                mask[2] = false;
-            }
-        }
-        mask
-    }
-
-    /// Assemble and eliminate `(∇²E + Σ (λ/z) a aᵀ) δ = −∇E + Σ (μw/z) a`; with μ = 0 the energy alone, solved for
-    /// the unknowns themselves.
+    /// Assemble and eliminate `(∇²E + Σ w(λ/z) a aᵀ) δ = −∇E`; without conditions the energy alone, for the unknowns
+    /// themselves.
     fn assemble(&mut self) {
         let n = self.data.len();
-        let mu = self.mu;
+        let constrained = self.mu > 0.0;
         self.system.clear();
-        (self.energy, self.weights, self.complementarity) = (0.0, 0.0, 0.0);
+        self.energy = 0.0;
         let mut diagonal = [0.0f64; 3];
         let mut rhs = [0.0f64; 2];
-        let mut free0 = free(&self.data.delta, 0);
         for i in 0..=n {
             let mut coupling = [0.0; 4];
             let mut next_diagonal = [0.0; 3];
             let mut next_rhs = [0.0; 2];
-            let free1 = if i < n { free(&self.data.delta, i + 1) } else { (false, false) };
-            if mu > 0.0 {
-                if let Some((k, unit, weight)) = self.node_condition(i) {
-                    let z = unit * self.v[i][k];
-                    let lambda = settle(self.node[i], mu, z);
-                    self.node[i] = lambda;
-                    diagonal[2 * k] += unit * unit * (weight * (lambda / z));
-                                        self.weights += weight;
-                    self.complementarity += weight * lambda * z;
-                }
+            let node = &mut self.nodes[i];
+            if constrained && node.k < 2 {
+                node.z = node.unit * self.v[i][node.k];
+                diagonal[2 * node.k] += node.unit * (node.unit * (node.w * (node.lambda / node.z)));
             }
+            let free0 = node.free;
+            let mut free1 = (false, false);
             if i < n {
-                let (a, b, weight) = factors(self.data, self.fairness, i);
-                if weight > 0.0 {
-                    let (m, r) = self.local_system(i, a, b, weight);
+                free1 = self.nodes[i + 1].free;
+                let Segment { a, b, e, .. } = self.segments[i];
+                if e > 0.0 {
+                    let (m, r) = self.local_system(i, constrained);
                     diagonal[0] += a * (a * m[0]);
                     diagonal[1] += a * (b * m[1]);
                     diagonal[2] += b * (b * m[4]);
-                    coupling =
-                        [a * (a * m[2]), a * (b * m[3]), b * (a * m[5]), b * (b * m[6])];
+                    coupling = [a * (a * m[2]), a * (b * m[3]), b * (a * m[5]), b * (b * m[6])];
                     next_diagonal = [a * (a * m[7]), a * (b * m[8]), b * (b * m[9])];
                     rhs[0] += a * r[0];
                     rhs[1] += b * r[1];
@@ -353,15 +446,17 @@ impl<'a> Problem<'a> {
             if !free1.1 {
                 (coupling[1], coupling[3]) = (0.0, 0.0);
             }
+            self.descent[i] = rhs;
             self.system.push(diagonal, coupling, rhs);
-            (diagonal, rhs, free0) = (next_diagonal, next_rhs, free1);
+            (diagonal, rhs) = (next_diagonal, next_rhs);
         }
     }
 
-    /// A segment's matrix (upper triangle, row by row) and right-hand side in its dimensionless unknowns.
+    /// A segment's matrix (upper triangle, row by row) and −∇E in its dimensionless unknowns.
     #[inline]
-    fn local_system(&mut self, i: usize, a: f64, b: f64, weight: f64) -> ([f64; 10], [f64; 4]) {
-        let e = weight / 35.0;
+    fn local_system(&mut self, i: usize, constrained: bool) -> ([f64; 10], [f64; 4]) {
+        let segment = self.segments[i];
+        let Segment { a, b, e, w } = segment;
         let (v0, v1) = (self.v[i], self.v[i + 1]);
         let u = [a * v0[0] - 1.0, b * v0[1], a * v1[0] - 1.0, b * v1[1]];
         let mut m = [0.0; 10];
@@ -378,212 +473,198 @@ impl<'a> Problem<'a> {
             r[j] *= e;
         }
         self.energy += e * energy::local(u[0], u[1], u[2], u[3]);
-        let mu = self.mu;
-        if mu == 0.0 {
+        if !constrained {
             return (m, r);
         }
-        let c = Self::bernstein(a, b, v0, v1);
-        let w = self.barrier(i);
-        for p in self.first[i] as usize..self.first[i + 1] as usize {
-            let mask = self.mask(i, self.parts[p]);
-            let rows = &self.table[usize::from(self.parts[p])];
+        let c = segment.bernstein(v0, v1);
+        for block in &mut self.blocks[self.first[i] as usize..self.first[i + 1] as usize] {
+            let conditions = &self.table[usize::from(block.part)];
+            let z = values(conditions, &c);
+            let mut stiffness = [0.0; 4];
             for j in 0..4 {
-                if !mask[j] {
-                    continue;
-                }
-                let z = dot(&c, &rows.value[j + 1]);
-                let g = &rows.gradient[j + 1];
-                let inverse = 1.0 / z;
-                let lambda = settle(self.lambda[p][j], mu, z);
-                self.lambda[p][j] = lambda;
-                self.weights += w;
-                self.complementarity += w * lambda * z;
-                let stiffness = w * lambda * inverse;
-                let mut at = 0;
-                for k in 0..4 {
-                    let s = stiffness * g[k];
-                    for l in k..4 {
-                        m[at] += s * g[l];
-                        at += 1;
-                    }
+                block.z[j] = if block.on[j] > 0.0 { z[j] } else { 1.0 };
+                block.iz[j] = 1.0 / block.z[j];
+                stiffness[j] = w * block.lambda[j] * block.iz[j];
+            }
+            let g = &conditions.by_unknown;
+            let mut at = 0;
+            for p in 0..4 {
+                let scaled = times(&stiffness, &g[p]);
+                for row in &g[p..] {
+                    m[at] += sum(&times(&scaled, row));
+                    at += 1;
                 }
             }
         }
         (m, r)
     }
 
-    /// Visit every condition: z, its multiplier over the weight, its weight, and its changes along two directions.
-    #[inline]
-    fn conditions(
-        &mut self,
-        one: &[[f64; 2]],
-        two: &[[f64; 2]],
-        mut visit: impl FnMut(f64, &mut f64, f64, f64, f64),
-    ) {
-        let n = self.data.len();
-        for i in 0..=n {
-            if let Some((k, unit, weight)) = self.node_condition(i) {
-                let z = unit * self.v[i][k];
-                visit(z, &mut self.node[i], weight, unit * one[i][k], unit * two[i][k]);
-            }
-            if i == n {
-                break;
-            }
-            let (a, b, weight) = factors(self.data, self.fairness, i);
-            if weight == 0.0 {
-                continue;
-            }
-            let w = self.barrier(i);
-            let c = Self::bernstein(a, b, self.v[i], self.v[i + 1]);
-            let change = |d: &[[f64; 2]]| {
-                let mut dc = Self::bernstein(a, b, d[i], d[i + 1]);
-                dc[2] -= 5.0;
-                dc
-            };
-            let (dc, ec) = (change(one), change(two));
-            for p in self.first[i] as usize..self.first[i + 1] as usize {
-                let mask = self.mask(i, self.parts[p]);
-                let rows = &self.table[usize::from(self.parts[p])];
-                for j in 0..4 {
-                    if mask[j] {
-                        let row = &rows.value[j + 1];
-                        visit(dot(&c, row), &mut self.lambda[p][j], w, dot(&dc, row), dot(&ec, row));
-                    }
-                }
-            }
-        }
-    }
-
-    /// How far a direction may go, and Σ w(z + αdz)(λ + αdλ) as a polynomial in α. Without a predictor: the affine
-    /// direction; with one: the corrected direction towards μ.
-    fn look(&mut self, step: &[[f64; 2]], corrected: Option<(&[[f64; 2]], f64)>) -> Look {
+    /// Changes of the slacks along the affine direction, how far it may go, and Σ w(z + αdz)(λ + αdλ).
+    fn predict(&mut self, step: &[[f64; 2]]) -> Look {
         let mut shortest = 0.0f64;
         let mut products = [0.0; 3];
-        let (affine, mu) = corrected.unwrap_or((step, 0.0));
-        let corrects = corrected.is_some();
-        self.conditions(step, affine, |z, lambda, w, dz, az| {
-            let lambda = *lambda;
-            let dl = change(z, lambda, dz, az, mu, corrects);
-            shortest = shortest.max(-dz / z).max(-dl / lambda);
-            products[0] += w * z * lambda;
-            products[1] += w * (z * dl + lambda * dz);
-            products[2] += w * dz * dl;
-        });
+        for (node, d) in self.nodes.iter_mut().zip(step) {
+            if node.k < 2 {
+                node.az = node.unit * d[node.k];
+                let ratio = node.az / node.z;
+                // dλ = −λ(1 + dz/z).
+                shortest = shortest.max(-ratio).max(1.0 + ratio);
+                let product = node.w * node.z * node.lambda;
+                products[0] += product;
+                products[1] -= product;
+                products[2] -= product * ratio * (1.0 + ratio);
+            }
+        }
+        let mut worst = [0.0f64; 4];
+        for i in 0..self.data.len() {
+            let segment = &self.segments[i];
+            let dc = segment.change(step[i], step[i + 1]);
+            let (mut p0, mut p2) = ([0.0; 4], [0.0; 4]);
+            for block in &mut self.blocks[self.first[i] as usize..self.first[i + 1] as usize] {
+                let az = values(&self.table[usize::from(block.part)], &dc);
+                for j in 0..4 {
+                    block.az[j] = az[j] * block.on[j];
+                    let ratio = block.az[j] * block.iz[j];
+                    worst[j] = worst[j].max(-ratio).max((1.0 + ratio) * block.on[j]);
+                    let product = block.z[j] * block.lambda[j];
+                    p0[j] += product;
+                    p2[j] -= product * ratio * (1.0 + ratio);
+                }
+            }
+            products[0] += segment.w * sum(&p0);
+            products[1] -= segment.w * sum(&p0);
+            products[2] += segment.w * sum(&p2);
+        }
+        let shortest = worst.iter().fold(shortest, |a, b| a.max(*b));
         Look { length: 1.0 / shortest, products }
     }
 
-    /// `−∇E + Σ w (μ − dz dλ)/z a` along the affine direction.
-    fn corrector_rhs(&mut self, affine: &mut [[f64; 2]], mu: f64) {
+    /// The corrector's right-hand side `−∇E + Σ w (μ − az aλ)/z a`, aλ = −λ(1 + az/z).
+    fn corrector(&mut self, mu: f64) {
         let n = self.data.len();
-        let mut rhs = std::mem::take(&mut self.rhs);
-        rhs.clear();
-        rhs.resize(n + 1, [0.0; 2]);
-        for i in 0..=n {
-            if let Some((k, unit, weight)) = self.node_condition(i) {
-                let z = unit * self.v[i][k];
-                let lambda = self.node[i];
-                let az = unit * affine[i][k];
-                let al = -lambda * (1.0 + az / z);
-                rhs[i][k] += unit * (weight * ((mu - az * al) / z));
+        self.rhs.copy_from_slice(&self.descent);
+        for (node, r) in self.nodes.iter().zip(&mut self.rhs) {
+            if node.k < 2 {
+                let second = node.az * node.lambda * (1.0 + node.az / node.z);
+                r[node.k] += node.unit * (node.w * ((mu + second) / node.z));
             }
-            if i == n {
-                break;
-            }
-            let (a, b, weight) = factors(self.data, self.fairness, i);
-            if weight == 0.0 {
-                continue;
-            }
-            let e = weight / 35.0;
-            let w = self.barrier(i);
-            let (v0, v1) = (self.v[i], self.v[i + 1]);
-            let u = [a * v0[0] - 1.0, b * v0[1], a * v1[0] - 1.0, b * v1[1]];
-            let c = Self::bernstein(a, b, v0, v1);
-            let mut ac = Self::bernstein(a, b, affine[i], affine[i + 1]);
-            ac[2] -= 5.0;
+        }
+        for i in 0..n {
+            let Segment { a, b, w, .. } = self.segments[i];
             let mut r = [0.0; 4];
-            for j in 0..4 {
-                for k in 0..4 {
-                    r[j] -= HESSIAN[j][k] * u[k];
-                }
-                r[j] *= e;
-            }
-            for p in self.first[i] as usize..self.first[i + 1] as usize {
-                let mask = self.mask(i, self.parts[p]);
-                let rows = &self.table[usize::from(self.parts[p])];
+            for block in &self.blocks[self.first[i] as usize..self.first[i + 1] as usize] {
+                let mut force = [0.0; 4];
                 for j in 0..4 {
-                    if mask[j] {
-                        let z = dot(&c, &rows.value[j + 1]);
-                        let az = dot(&ac, &rows.value[j + 1]);
-                        let lambda = self.lambda[p][j];
-                        let al = -lambda * (1.0 + az / z);
-                        let force = w * ((mu - az * al) / z);
-                        for k in 0..4 {
-                            r[k] += force * rows.gradient[j + 1][k];
-                        }
-                    }
+                    let second = block.az[j] * block.lambda[j] * (1.0 + block.az[j] * block.iz[j]);
+                    force[j] = w * block.on[j] * ((mu + second) * block.iz[j]);
+                }
+                let g = &self.table[usize::from(block.part)].by_unknown;
+                for k in 0..4 {
+                    r[k] += sum(&times(&force, &g[k]));
                 }
             }
-            rhs[i][0] += a * r[0];
-            rhs[i][1] += b * r[1];
-            rhs[i + 1][0] += a * r[2];
-            rhs[i + 1][1] += b * r[3];
+            self.rhs[i][0] += a * r[0];
+            self.rhs[i][1] += b * r[1];
+            self.rhs[i + 1][0] += a * r[2];
+            self.rhs[i + 1][1] += b * r[3];
         }
-        for (i, r) in rhs.iter_mut().enumerate() {
-            let (slope, second) = free(&self.data.delta, i);
-            *r = [if slope { r[0] } else { 0.0 }, if second { r[1] } else { 0.0 }];
+        for (node, r) in self.nodes.iter().zip(&mut self.rhs) {
+            if !node.free.0 {
+                r[0] = 0.0;
+            }
+            if !node.free.1 {
+                r[1] = 0.0;
+            }
         }
-        self.rhs = rhs;
     }
 
-    fn advance(&mut self, step: &[[f64; 2]], affine: &[[f64; 2]], mu: f64, alpha: f64) {
-        self.conditions(step, affine, |z, lambda, _, dz, az| {
-            *lambda += alpha * change(z, *lambda, dz, az, mu, true);
-        });
+    /// Changes of the multipliers along the corrected direction, how far it may go, and Σ w(z + αdz)(λ + αdλ).
+    fn correct(&mut self, step: &[[f64; 2]], mu: f64) -> Look {
+        let mut shortest = 0.0f64;
+        let mut products = [0.0; 3];
+        for (node, d) in self.nodes.iter_mut().zip(step) {
+            if node.k < 2 {
+                let dz = node.unit * d[node.k];
+                let second = node.az * node.lambda * (1.0 + node.az / node.z);
+                node.dl = (mu + second) / node.z - node.lambda * (1.0 + dz / node.z);
+                shortest = shortest.max(-dz / node.z).max(-node.dl / node.lambda);
+                products[0] += node.w * node.z * node.lambda;
+                products[1] += node.w * (node.z * node.dl + node.lambda * dz);
+                products[2] += node.w * dz * node.dl;
+            }
+        }
+        let mut worst = [0.0f64; 4];
+        for i in 0..self.data.len() {
+            let segment = &self.segments[i];
+            let dc = segment.change(step[i], step[i + 1]);
+            let (mut p0, mut p1, mut p2) = ([0.0; 4], [0.0; 4], [0.0; 4]);
+            for block in &mut self.blocks[self.first[i] as usize..self.first[i + 1] as usize] {
+                let dz = values(&self.table[usize::from(block.part)], &dc);
+                for j in 0..4 {
+                    let on = block.on[j];
+                    let (z, iz, lambda, az) = (block.z[j], block.iz[j], block.lambda[j], block.az[j]);
+                    let dz = dz[j] * on;
+                    let second = az * lambda * (1.0 + az * iz);
+                    let dl = on * ((mu + second) * iz) - lambda * (1.0 + dz * iz);
+                    block.dl[j] = dl;
+                    // A coefficient that is no condition has λ = dλ = 0: keep the quotient defined.
+                    worst[j] = worst[j].max(-dz * iz).max(-dl / (lambda + (1.0 - on)));
+                    p0[j] += z * lambda;
+                    p1[j] += z * dl + lambda * dz;
+                    p2[j] += dz * dl;
+                }
+            }
+            products[0] += segment.w * sum(&p0);
+            products[1] += segment.w * sum(&p1);
+            products[2] += segment.w * sum(&p2);
+        }
+        let shortest = worst.iter().fold(shortest, |a, b| a.max(*b));
+        Look { length: 1.0 / shortest, products }
+    }
+
+    fn advance(&mut self, step: &[[f64; 2]], alpha: f64) {
+        for node in &mut self.nodes {
+            node.lambda += alpha * node.dl;
+        }
+        for block in &mut self.blocks {
+            for j in 0..4 {
+                block.lambda[j] += alpha * block.dl[j];
+            }
+        }
         for (v, d) in self.v.iter_mut().zip(step) {
             *v = [v[0] + alpha * d[0], v[1] + alpha * d[1]];
         }
     }
 
-    /// Halve the parts with a condition near its limit.
-    fn refine(&mut self) {
-        let n = self.data.len();
-        
-        let mut parts = Vec::with_capacity(self.parts.len() + n / 2);
-        let mut lambda = Vec::with_capacity(self.lambda.len() + n / 2);
-        for i in 0..n {
-            let (a, b, weight) = factors(self.data, self.fairness, i);
-            let c = Self::bernstein(a, b, self.v[i], self.v[i + 1]);
-            let range = self.first[i] as usize..self.first[i + 1] as usize;
-            self.first[i] = parts.len() as u32;
-            for p in range {
-                let part = self.parts[p];
-                let rows = &self.table[usize::from(part)];
-                let mask = self.mask(i, part);
-                let near = NEAR / f64::from(1u32 << level(part));
-                let close = weight > 0.0
-                    && level(part) < DEEPEST
-                    && (0..4).any(|j| mask[j] && dot(&c, &rows.value[j + 1]) < near);
-                if close {
-                    parts.extend([2 * part, 2 * part + 1]);
-                    lambda.extend([[f64::NAN; 4]; 2]);
-                } else {
-                    parts.push(part);
-                    lambda.push(self.lambda[p]);
-                }
-            }
-        }
-        self.first[n] = parts.len() as u32;
-        self.parts = parts;
-        self.lambda = lambda;
+    /// Conditions at their limits: λz = μ on the path, so an active one has its multiplier of order one and an
+    /// inactive one its distance.
+    fn active(&self) -> usize {
+        let root = self.mu.sqrt();
+        let node = self.nodes.iter().filter(|n| n.k < 2 && n.lambda * root > n.z).count();
+        let inner = self
+            .blocks
+            .iter()
+            .map(|b| (0..4).filter(|&j| b.on[j] > 0.0 && b.lambda[j] * root > b.z[j]).count())
+            .sum::<usize>();
+        node + inner
+    }
+}
+
+impl Segment {
+    /// Bernstein coefficients of the derivative over Δ; small ones without cancellation.
+    #[inline]
+    fn bernstein(&self, v0: [f64; 2], v1: [f64; 2]) -> [f64; 5] {
+        let mut c = self.change(v0, v1);
+        c[2] += 5.0;
+        c
     }
 
-    fn active(&mut self) -> usize {
-        let zero = vec![[0.0; 2]; self.v.len()];
-        let mu = self.mu;
-        let mut count = 0;
-        // λz = μ on the path: an active condition has its multiplier, an inactive one its distance of order one.
-        self.conditions(&zero, &zero, |z, lambda, _, _, _| count += usize::from(*lambda * mu.sqrt() > z));
-        count
+    /// Their change along a direction.
+    #[inline]
+    fn change(&self, v0: [f64; 2], v1: [f64; 2]) -> [f64; 5] {
+        let (c0, c4) = (self.a * v0[0], self.a * v1[0]);
+        let (c1, c3) = (c0 + self.b * v0[1], c4 - self.b * v1[1]);
+        [c0, c1, -((c0 + c1) + (c3 + c4)), c3, c4]
     }
 }
 
@@ -593,30 +674,24 @@ struct Look {
     products: [f64; 3],
 }
 
-/// The change of a multiplier along a direction: `(μ − az·aλ)/z − λ(1 + dz/z)`, without the middle terms for the
-/// affine one.
+/// Coefficients 1…4 of a part.
 #[inline]
-fn change(z: f64, lambda: f64, dz: f64, az: f64, mu: f64, corrected: bool) -> f64 {
-    let target = if corrected { (mu + az * (lambda * (1.0 + az / z))) / z } else { 0.0 };
-    target - lambda * (1.0 + dz / z)
-}
-
-/// A multiplier kept within two decades of the central path; a fresh one (NaN) starts on it.
-#[inline]
-fn settle(lambda: f64, mu: f64, z: f64) -> f64 {
-    let central = mu / z;
-    if lambda > 0.0 { lambda } else { central }
-}
-
-/// The factors from (d, s) to the dimensionless (1 + a, b) of a segment, `1/Δ` and `h/(4Δ)`, and its energy weight;
-/// all 0 for a flat segment.
-#[inline]
-fn factors(data: &Data, fairness: Fairness, i: usize) -> (f64, f64, f64) {
-    let (h, delta) = (data.h[i], data.delta[i]);
-    if is_flat(delta) {
-        return (0.0, 0.0, 0.0);
+fn values(conditions: &Conditions, c: &[f64; 5]) -> [f64; 4] {
+    let mut z = [0.0; 4];
+    for (k, row) in conditions.by_coefficient.iter().enumerate() {
+        for j in 0..4 {
+            z[j] += c[k] * row[j];
+        }
     }
-    let a = 1.0 / delta;
-    (a, 0.25 * h * a, energy::weight(fairness, h, delta))
+    z
 }
 
+#[inline]
+fn times(a: &[f64; 4], b: &[f64; 4]) -> [f64; 4] {
+    [a[0] * b[0], a[1] * b[1], a[2] * b[2], a[3] * b[3]]
+}
+
+#[inline]
+fn sum(a: &[f64; 4]) -> f64 {
+    (a[0] + a[2]) + (a[1] + a[3])
+}

@@ -4,11 +4,12 @@ use crate::MonotoneError;
 use crate::data::{Data, check_finite};
 use crate::energy::{self, Fairness, is_flat};
 use crate::extrapolation::Extrapolation;
-use crate::optimal::{self, coefficients};
+use crate::optimal::coefficients;
 use crate::program::{Program, admissible_slopes};
 use crate::quartic_form::certified_nonnegative;
 use crate::slopes;
 use crate::spline::{Kind, MonotoneSpline};
+use crate::windows;
 use serde::{Deserialize, Serialize};
 use std::ops::Deref;
 
@@ -205,7 +206,7 @@ fn paper(data: &Data, mut d: Vec<f64>, fairness: Fairness) -> Result<Fit, Monoto
 
 /// Slopes and second derivatives together; the paper's program when that should be better or certifiable only.
 fn fairest(data: &Data, fairness: Fairness) -> Result<Fit, MonotoneError> {
-    let best = optimal::optimise(data, fairness);
+    let best = windows::optimise(data, fairness);
     let energy = energy::total(data, fairness, &best.d, &best.s);
     let finite = energy.is_finite() && certified(data, &best.d, &best.s);
     // A converged optimum is below the paper's result by construction; only a stopped one has to be compared.

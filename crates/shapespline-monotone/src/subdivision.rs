@@ -19,6 +19,10 @@ pub(crate) struct Conditions {
     pub(crate) value: [[f64; 5]; 5],
     /// The same rows in the unknowns (a₀, b₀, a₁, b₁).
     pub(crate) gradient: [[f64; 4]; 5],
+    /// Coefficients 1…4 of `value`, by columns.
+    pub(crate) by_coefficient: [[f64; 4]; 5],
+    /// Coefficients 1…4 of `gradient`, by columns.
+    pub(crate) by_unknown: [[f64; 4]; 4],
 }
 
 /// Level of a part.
@@ -31,7 +35,12 @@ pub(crate) fn level(part: Part) -> u8 {
 pub(crate) fn table() -> &'static [Conditions] {
     static TABLE: OnceLock<Vec<Conditions>> = OnceLock::new();
     TABLE.get_or_init(|| {
-        let mut table = vec![Conditions { value: [[0.0; 5]; 5], gradient: [[0.0; 4]; 5] }];
+        let mut table = vec![Conditions {
+            value: [[0.0; 5]; 5],
+            gradient: [[0.0; 4]; 5],
+            by_coefficient: [[0.0; 4]; 5],
+            by_unknown: [[0.0; 4]; 4],
+        }];
         for part in 1u16..(2 << DEEPEST) {
             let mut value = [[0.0; 5]; 5];
             if part == 1 {
@@ -45,7 +54,9 @@ pub(crate) fn table() -> &'static [Conditions] {
             let gradient = value.map(|w| {
                 [w[0] + w[1] - 2.0 * w[2], w[1] - w[2], w[3] + w[4] - 2.0 * w[2], w[2] - w[3]]
             });
-            table.push(Conditions { value, gradient });
+            let by_coefficient = std::array::from_fn(|k| std::array::from_fn(|j| value[j + 1][k]));
+            let by_unknown = std::array::from_fn(|k| std::array::from_fn(|j| gradient[j + 1][k]));
+            table.push(Conditions { value, gradient, by_coefficient, by_unknown });
         }
         table
     })
