@@ -10,6 +10,8 @@
 //! which lower the objective at every step and identify the active set after finitely many, and the active-set
 //! iteration restarts from there. Júdice and Pires, *Computers & Operations Research* 21 (1994) 587–596;
 //! Hintermüller, Ito and Kunisch, *SIAM J. Optim.* 13 (2003) 865–888.
+// Negated comparisons are meant: they catch NaN as well.
+#![allow(clippy::neg_cmp_op_on_partial_ord)]
 
 use thiserror::Error;
 
@@ -473,11 +475,7 @@ mod tests {
                 let solution = solve_with_patience(&program, patience).unwrap();
                 assert!(solution.solved, "case {case}");
                 assert_eq!(solution.safeguards > 0, patience == 0, "case {case}");
-                assert!(
-                    solution.kkt_residual < 1e-12,
-                    "case {case}: {:e}",
-                    solution.kkt_residual
-                );
+                assert!(solution.kkt_residual < 1e-12, "case {case}: {:e}", solution.kkt_residual);
                 let size = planted.x.iter().fold(1.0f64, |a, b| a.max(b.abs()));
                 for (a, b) in solution.x.iter().zip(&planted.x) {
                     assert!((a - b).abs() <= 1e-8 * size, "case {case} n {n}: {a} {b}");
@@ -510,10 +508,7 @@ mod tests {
             lower: &[0.0, 2.0],
             upper: &[1.0, 1.0],
         };
-        assert_eq!(
-            solve(&program).unwrap_err().to_string(),
-            "lower[1] = 2 is above upper[1] = 1"
-        );
+        assert_eq!(solve(&program).unwrap_err().to_string(), "lower[1] = 2 is above upper[1] = 1");
         program.lower = &[0.0, f64::NAN];
         assert!(matches!(solve(&program), Err(BoxQpError::EmptyBox { index: 1, .. })));
         program.lower = &[0.0];

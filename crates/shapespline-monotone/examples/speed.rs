@@ -23,7 +23,10 @@ fn main() {
         state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
         (state >> 11) as f64 / (1u64 << 53) as f64
     };
-    println!("{:>8} {:>14} {:>14} {:>14}   build, ns a point", "N", "quartic", "fritsch-b.", "optimal");
+    println!(
+        "{:>8} {:>14} {:>14} {:>14}   build, ns a point",
+        "N", "quartic", "fritsch-b.", "optimal"
+    );
     for n in [5usize, 20, 1000, 10_000] {
         let (mut x, mut y) = (vec![0.0], vec![0.0]);
         for k in 1..n {
@@ -31,7 +34,9 @@ fn main() {
             y.push(y[k - 1] + next());
         }
         let per = 1e9 / n as f64;
-        let quartic = time(|| drop(black_box(MonotoneQuartic::new(&x, &y, &QuarticOptions::default()))), 0.4) * per;
+        let quartic =
+            time(|| drop(black_box(MonotoneQuartic::new(&x, &y, &QuarticOptions::default()))), 0.4)
+                * per;
         let with = |slopes| QuinticOptions { slopes, ..QuinticOptions::default() };
         let fb = with(Slopes::FritschButland);
         let paper = time(|| drop(black_box(MonotoneQuintic::new(&x, &y, &fb))), 0.4) * per;
@@ -55,8 +60,11 @@ fn main() {
         values.sort_by(f64::total_cmp);
         let sorted = time(|| f.evaluate_into(&q, 0, None, black_box(&mut out)), 0.3) * per;
         let inverse_s = time(|| drop(f.inverse_into(&values, black_box(&mut out))), 0.3) * per;
-        let pool = rayon_one(|| time(|| f.evaluate_into(&q, 0, None, black_box(&mut out)), 0.3) * per);
-        println!("         ns a query: unsorted {unsorted:.1}, sorted {sorted:.1} ({pool:.1} on one thread); inverse {inverse_u:.1}, {inverse_s:.1}");
+        let pool =
+            rayon_one(|| time(|| f.evaluate_into(&q, 0, None, black_box(&mut out)), 0.3) * per);
+        println!(
+            "         ns a query: unsorted {unsorted:.1}, sorted {sorted:.1} ({pool:.1} on one thread); inverse {inverse_u:.1}, {inverse_s:.1}"
+        );
     }
     let (columns, n) = (10_000, 20);
     let x: Vec<f64> = (0..n).map(|k| k as f64).collect();

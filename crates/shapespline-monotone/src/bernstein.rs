@@ -69,14 +69,7 @@ pub(crate) fn roots(b: &[f64]) -> Vec<f64> {
     out
 }
 
-fn isolate(
-    whole: &[f64],
-    b: &[f64],
-    lo: f64,
-    hi: f64,
-    depth: u32,
-    found: &mut impl FnMut(f64),
-) {
+fn isolate(whole: &[f64], b: &[f64], lo: f64, hi: f64, depth: u32, found: &mut impl FnMut(f64)) {
     let n = b.len() - 1;
     let mut variations = 0;
     let mut last = 0.0f64;

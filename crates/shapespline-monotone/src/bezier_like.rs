@@ -55,12 +55,7 @@ pub enum BezierLike {
 #[must_use]
 pub fn cubic_basis(t: f64, a: f64, b: f64) -> [f64; 4] {
     let u = 1.0 - t;
-    [
-        u * u * (1.0 + t * (2.0 - a)),
-        a * u * u * t,
-        b * u * t * t,
-        t * t * (1.0 + u * (2.0 - b)),
-    ]
+    [u * u * (1.0 + t * (2.0 - a)), a * u * u * t, b * u * t * t, t * t * (1.0 + u * (2.0 - b))]
 }
 
 impl BezierLike {
@@ -94,11 +89,9 @@ impl BezierLike {
             Self::Quartic { a, q, alpha, beta } => {
                 vec![(u, a, beta * q), (t, alpha * a, q)]
             }
-            Self::Quintic { a, g, alpha, beta } => vec![
-                (u * u, a, beta * g),
-                (2.0 * u * t, 0.5 * a, 0.5 * g),
-                (t * t, alpha * a, g),
-            ],
+            Self::Quintic { a, g, alpha, beta } => {
+                vec![(u * u, a, beta * g), (2.0 * u * t, 0.5 * a, 0.5 * g), (t * t, alpha * a, g)]
+            }
         }
     }
 

@@ -25,7 +25,11 @@ impl PowerOfTwo {
 /// The binary exponent of a positive finite number (subnormals included).
 pub(crate) fn exponent(value: f64) -> i32 {
     let bits = ((value.to_bits() >> 52) & 0x7ff) as i32;
-    if bits == 0 { exponent(value * f64::from_bits(0x4350_0000_0000_0000)) - 54 } else { bits - 1023 }
+    if bits == 0 {
+        exponent(value * f64::from_bits(0x4350_0000_0000_0000)) - 54
+    } else {
+        bits - 1023
+    }
 }
 
 /// Spacings and secants of checked data in units `2^ex` of x and `2^ey` of y, where the mean spacing and the
@@ -140,11 +144,7 @@ fn check(x: &[f64], y: &[f64]) -> Result<(), MonotoneError> {
     check_finite("x", x)?;
     check_finite("y", y)?;
     if let Some(i) = x.windows(2).position(|w| !(w[0] < w[1])) {
-        return Err(MonotoneError::NotIncreasing {
-            index: i + 1,
-            value: x[i + 1],
-            previous: x[i],
-        });
+        return Err(MonotoneError::NotIncreasing { index: i + 1, value: x[i + 1], previous: x[i] });
     }
     let last = x.len() - 1;
     if !(x[last] - x[0]).is_finite() {

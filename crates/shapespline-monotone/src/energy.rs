@@ -35,9 +35,7 @@ impl std::str::FromStr for Fairness {
 /// cancellation on smooth data, where the printed form subtracts numbers a million times the result.
 #[inline]
 pub(crate) fn local(a0: f64, b0: f64, a1: f64, b1: f64) -> f64 {
-    192.0 * (a0 * a0 + a1 * a1)
-        + 216.0 * a0 * a1
-        + b0 * (88.0 * a0 + 32.0 * a1)
+    192.0 * (a0 * a0 + a1 * a1) + 216.0 * a0 * a1 + b0 * (88.0 * a0 + 32.0 * a1)
         - b1 * (32.0 * a0 + 88.0 * a1)
         + 48.0 * (b0 * b0 + b1 * b1)
         + 16.0 * b0 * b1
@@ -111,7 +109,10 @@ mod tests {
                 let c: Vec<f64> =
                     (0..4).map(|k| 20.0 * (b[k + 2] - 2.0 * b[k + 1] + b[k])).collect();
                 let u = 1.0 - t;
-                c[0] * u * u * u + 3.0 * c[1] * u * u * t + 3.0 * c[2] * u * t * t + c[3] * t * t * t
+                c[0] * u * u * u
+                    + 3.0 * c[1] * u * u * t
+                    + 3.0 * c[2] * u * t * t
+                    + c[3] * t * t * t
             };
             // Four Gauss points integrate degree 7 exactly; the square has degree 6.
             let (x1, w1) = (0.339_981_043_584_856_3, 0.652_145_154_862_546_1);
@@ -121,7 +122,8 @@ mod tests {
                 .map(|(x, w)| 0.5 * w * second(0.5 + 0.5 * x).powi(2))
                 .sum();
             let k = h / (4.0 * delta);
-            let ours = (delta * h) * (delta * h)
+            let ours = (delta * h)
+                * (delta * h)
                 * local((d0 - delta) / delta, s0 * k, (d1 - delta) / delta, s1 * k)
                 / 35.0;
             assert!((gauss - ours).abs() <= 1e-13 * (1.0 + gauss), "{gauss} {ours}");

@@ -17,7 +17,9 @@ pub enum MonotoneError {
         value: f64,
     },
     /// Abscissae that do not increase.
-    #[error("x[{index}] = {value} does not exceed its predecessor {previous}; x must be strictly increasing")]
+    #[error(
+        "x[{index}] = {value} does not exceed its predecessor {previous}; x must be strictly increasing"
+    )]
     NotIncreasing {
         /// The entry.
         index: usize,
@@ -47,7 +49,9 @@ pub enum MonotoneError {
         expected: usize,
     },
     /// A difference, slope or curvature of the data that does not fit in double precision.
-    #[error("the {quantity} at {argument}[{index}] = {value} is out of the range of double precision; rescale the data")]
+    #[error(
+        "the {quantity} at {argument}[{index}] = {value} is out of the range of double precision; rescale the data"
+    )]
     OutOfRange {
         /// What overflows: "spread", "secant slope" or "second derivative".
         quantity: &'static str,

@@ -102,11 +102,8 @@ impl MonotoneSpline {
             return self.x()[i + 1];
         }
         let t = local(record, y);
-        let x = if t < 0.5 {
-            record.x0 + t * record.h
-        } else {
-            self.x()[i + 1] - (1.0 - t) * record.h
-        };
+        let x =
+            if t < 0.5 { record.x0 + t * record.h } else { self.x()[i + 1] - (1.0 - t) * record.h };
         x.max(record.x0).min(self.x()[i + 1])
     }
 }
@@ -134,7 +131,8 @@ fn local(record: &Record, y: f64) -> f64 {
         }
         let newton = t - r / slope;
         // Newton converges in a few steps; where the derivative touches zero it crawls and bisection takes over.
-        let next = if newton > lo && newton < hi && k % 4 != 3 || (newton - t).abs() < 1e-8 && newton > lo && newton < hi {
+        let near = (newton - t).abs() < 1e-8;
+        let next = if newton > lo && newton < hi && (k % 4 != 3 || near) {
             newton
         } else {
             0.5 * (lo + hi)

@@ -29,6 +29,9 @@
 //! # Ok::<(), shapespline_monotone::MonotoneError>(())
 //! ```
 
+// Negated comparisons are meant: they catch NaN as well. Index loops follow the formulas, over several arrays at once.
+#![allow(clippy::neg_cmp_op_on_partial_ord, clippy::needless_range_loop)]
+
 mod bernstein;
 pub mod bezier_like;
 mod data;
@@ -53,6 +56,10 @@ mod slopes;
 mod spline;
 mod subdivision;
 mod windows;
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct ReadmeDoctests;
 
 pub use bezier_like::BezierLike;
 pub use energy::Fairness;

@@ -147,8 +147,7 @@ mod tests {
                         } else {
                             x[0] + (x[n] - x[0]) * (1.2 * next() - 0.1)
                         };
-                        let expected =
-                            x[1..n].iter().take_while(|knot| v >= **knot).count();
+                        let expected = x[1..n].iter().take_while(|knot| v >= **knot).count();
                         assert_eq!(search.find(v), expected, "n {n} v {v}");
                         hint = search.find_near(v, hint);
                         assert_eq!(hint, expected);

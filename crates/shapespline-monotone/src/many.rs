@@ -116,7 +116,7 @@ pub fn fit_columns<F: MonotoneMany>(
     y: &[f64],
     options: &F::Options,
 ) -> Result<Vec<F>, MonotoneError> {
-    if x.is_empty() || y.len() % x.len() != 0 {
+    if x.is_empty() || !y.len().is_multiple_of(x.len()) {
         let expected = if x.is_empty() { 0 } else { (y.len() / x.len() + 1) * x.len() };
         return Err(MonotoneError::Length { argument: "y", found: y.len(), expected });
     }

@@ -4,18 +4,21 @@
 //! that the derivative's quartic pᵢ ≥ 0 on every segment. The paper's five sufficient conditions (21) ask it of the
 //! Bernstein coefficients on the whole segment; asked on ever smaller parts they close in on the exact condition.
 //!
-//! **Method.** A primal–dual interior-point iteration (Wright, *Primal–Dual Interior-Point Methods*, 1997) that
-//! starts strictly inside and stays there. A part whose conditions come close to their limits is halved on the way:
-//! the refined conditions are weaker, so the current point stays strictly inside and the iteration just goes on —
-//! refinement needs no restart and happens only where conditions are active. One step assembles and eliminates one
-//! block-tridiagonal system with 2×2 blocks: O(N).
+//! **Method.** A primal–dual interior-point iteration with Mehrotra's predictor and corrector (*SIAM J. Optim.* 2
+//! (1992) 575–601; Wright, *Primal–Dual Interior-Point Methods*, 1997) that starts strictly inside and stays there.
+//! Solved first on whole segments, roughly; then parts are halved where their coefficients are near zero — about the
+//! touching points — and the iteration goes on from a point moved back inside, twice. One step eliminates one
+//! block-tridiagonal system with 2×2 blocks and uses its factors twice: O(N).
 //!
 //! **Guarantee.** Every iterate satisfies the conditions strictly, so the result is monotone whatever the number of
 //! steps. If the unconstrained optimum (the natural cubic spline) is monotone, it is the answer, in one step.
+//!
+//! Measured against the conditions on thirty-two parts of every segment (Clarabel): within 0.15 % on random sets, by
+//! some 10–70 steps; the worst segment dictates the step length, so [`crate::windows`] keeps problems short.
 
 use crate::data::Data;
 use crate::energy::{self, Fairness, HESSIAN, is_flat};
-use crate::quartic_form::{derivative, least};
+use crate::quartic_form::{derivative, dot, least};
 use crate::slopes::sign;
 use crate::subdivision::{Conditions, DEEPEST, Part, level, table};
 use shapespline_banded::block_tridiagonal::BlockElimination;
@@ -25,14 +28,14 @@ const MAX_STEPS: usize = 250;
 /// Share of the way to the boundary that a step may go.
 const FRACTION: f64 = 0.98;
 /// Relative duality gap at which the iteration ends.
-const GAP: f64 = 1e-8;
+const GAP: f64 = 1e-12;
 /// Barrier parameter at the start, in units of the segments' energy scales.
 const START: f64 = 10.0;
 /// The same after a refinement, from a point this far on the way back to the interior one.
-const RESTART: (f64, f64) = (3.0, 0.3);
+const RESTART: (f64, f64) = (3.0, 0.4);
 /// Refinements, and the relative gap at which one is made.
 const PHASES: usize = 2;
-const COARSE: f64 = 0.05;
+const COARSE: f64 = 0.3;
 /// Halvings a refinement may make.
 const LEVELS: usize = 4;
 /// A part of length 2⁻ˡ is halved when one of its coefficients is below this times 2⁻ˡ: the coefficients of a part
@@ -170,6 +173,8 @@ struct Problem<'a> {
     /// Σ of barrier weights over all conditions.
     weights: f64,
     energy: f64,
+    /// Whether all slacks were positive at the last assembly.
+    healthy: bool,
 }
 
 impl<'a> Problem<'a> {
@@ -228,6 +233,7 @@ impl<'a> Problem<'a> {
             mu: 0.0,
             weights: 0.0,
             energy: 0.0,
+            healthy: true,
         }
     }
 
@@ -252,12 +258,20 @@ impl<'a> Problem<'a> {
         self.blocks = (0..n).map(|i| self.block(i, 1)).collect();
         self.enter(START);
         let mut direction: Vec<[f64; 2]> = vec![[0.0; 2]; n + 1];
+        let mut inside = self.v.clone();
         let mut residual = 1.0;
         let mut phase = 0;
         while outcome.steps < MAX_STEPS {
             outcome.steps += 1;
             // Predictor: the affine direction, towards complementarity 0.
             self.assemble();
+            if !self.healthy {
+                // Rounding has pushed a slack to zero: the point before was the last that is strictly inside.
+                self.v.copy_from_slice(&inside);
+                outcome.converged = outcome.gap <= 1e-6 && phase == PHASES;
+                break;
+            }
+            inside.copy_from_slice(&self.v);
             let mut system = std::mem::take(&mut self.system);
             direction.copy_from_slice(system.solve());
             let affine = self.predict(&direction);
@@ -370,8 +384,12 @@ impl<'a> Problem<'a> {
                 let part = block.part;
                 let near = NEAR / f64::from(1u32 << level(part));
                 let z = values(&self.table[usize::from(part)], &c);
-                let close =
-                    level(part) < DEEPEST && (0..4).any(|j| block.on[j] > 0.0 && z[j] < near);
+                // Coefficient 0 is the part's before, unless it is the segment's own: with it the choice is the same
+                // for data traversed backwards.
+                let shared = !part.is_power_of_two();
+                let close = level(part) < DEEPEST
+                    && ((0..4).any(|j| block.on[j] > 0.0 && z[j] < near)
+                        || shared && dot(&c, &self.table[usize::from(part)].value[0]) < near);
                 if close {
                     blocks.push(self.block(i, 2 * part));
                     blocks.push(self.block(i, 2 * part + 1));
@@ -402,7 +420,7 @@ impl<'a> Problem<'a> {
         let n = self.data.len();
         let constrained = self.mu > 0.0;
         self.system.clear();
-        self.energy = 0.0;
+        (self.energy, self.healthy) = (0.0, true);
         let mut diagonal = [0.0f64; 3];
         let mut rhs = [0.0f64; 2];
         for i in 0..=n {
@@ -412,6 +430,7 @@ impl<'a> Problem<'a> {
             let node = &mut self.nodes[i];
             if constrained && node.k < 2 {
                 node.z = node.unit * self.v[i][node.k];
+                self.healthy &= node.z > 0.0 && node.lambda > 0.0;
                 diagonal[2 * node.k] += node.unit * (node.unit * (node.w * (node.lambda / node.z)));
             }
             let free0 = node.free;
@@ -477,12 +496,14 @@ impl<'a> Problem<'a> {
             return (m, r);
         }
         let c = segment.bernstein(v0, v1);
+        let mut healthy = true;
         for block in &mut self.blocks[self.first[i] as usize..self.first[i + 1] as usize] {
             let conditions = &self.table[usize::from(block.part)];
             let z = values(conditions, &c);
             let mut stiffness = [0.0; 4];
             for j in 0..4 {
                 block.z[j] = if block.on[j] > 0.0 { z[j] } else { 1.0 };
+                healthy &= block.z[j] > 0.0 && block.lambda[j] >= 0.0;
                 block.iz[j] = 1.0 / block.z[j];
                 stiffness[j] = w * block.lambda[j] * block.iz[j];
             }
@@ -496,6 +517,7 @@ impl<'a> Problem<'a> {
                 }
             }
         }
+        self.healthy &= healthy;
         (m, r)
     }
 
@@ -602,7 +624,8 @@ impl<'a> Problem<'a> {
                 let dz = values(&self.table[usize::from(block.part)], &dc);
                 for j in 0..4 {
                     let on = block.on[j];
-                    let (z, iz, lambda, az) = (block.z[j], block.iz[j], block.lambda[j], block.az[j]);
+                    let (z, iz, lambda, az) =
+                        (block.z[j], block.iz[j], block.lambda[j], block.az[j]);
                     let dz = dz[j] * on;
                     let second = az * lambda * (1.0 + az * iz);
                     let dl = on * ((mu + second) * iz) - lambda * (1.0 + dz * iz);
@@ -694,4 +717,63 @@ fn times(a: &[f64; 4], b: &[f64; 4]) -> [f64; 4] {
 #[inline]
 fn sum(a: &[f64; 4]) -> f64 {
     (a[0] + a[2]) + (a[1] + a[3])
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use crate::reference;
+
+    struct Lcg(u64);
+    impl Lcg {
+        fn next(&mut self) -> f64 {
+            self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+            (self.0 >> 11) as f64 / (1u64 << 53) as f64
+        }
+    }
+
+    fn random(rng: &mut Lcg, n: usize, decades: f64) -> Data {
+        let (mut x, mut y) = (vec![0.0], vec![0.0]);
+        for k in 0..n {
+            x.push(x[k] + 10f64.powf(decades / 3.0 * (rng.next() - 0.5)) * (0.1 + rng.next()));
+            y.push(y[k] + 10f64.powf(decades * (rng.next() - 0.5)) * rng.next());
+        }
+        Data::new(&x, &y).unwrap()
+    }
+
+    /// A hundred random monotone sets against Clarabel on thirty-two parts a segment: within half a per cent, and
+    /// not below what the refined conditions allow.
+    #[test]
+    fn within_half_a_per_cent_of_the_reference() {
+        let mut rng = Lcg(1);
+        for (decades, n) in
+            [(0.0, 5), (0.0, 20), (1.0, 5), (1.0, 20), (3.0, 5), (3.0, 12), (0.0, 50)]
+        {
+            let (mut worst, mut steps, mut blocks) = (0.0f64, 0, 0);
+            for case in 0..15 {
+                let data = random(&mut rng, n, decades);
+                let mut problem = Problem::new(&data, Fairness::Bending);
+                let found = problem.run();
+                let d: Vec<f64> = problem.v.iter().map(|v| v[0]).collect();
+                let s: Vec<f64> = problem.v.iter().map(|v| v[1]).collect();
+                let ours = energy::total(&data, Fairness::Bending, &d, &s);
+                let (d, s, _) = reference::optimal(&data, Fairness::Bending, 5);
+                let ratio = ours / energy::total(&data, Fairness::Bending, &d, &s);
+                assert!(found.converged, "decades {decades} n {n} case {case}: {found:?}");
+                assert!(
+                    (0.9999..1.005).contains(&ratio),
+                    "decades {decades} n {n} case {case}: {ratio}"
+                );
+                worst = worst.max(ratio);
+                steps += found.steps;
+                blocks += problem.blocks.len();
+            }
+            println!(
+                "decades {decades} n {n}: worst {worst:.5}, steps {}, parts {:.1}",
+                steps / 15,
+                blocks as f64 / 15.0 / n as f64
+            );
+        }
+    }
 }

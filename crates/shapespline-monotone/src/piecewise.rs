@@ -210,8 +210,16 @@ impl PiecewisePolynomial {
                     run += v * step;
                     c.push(run);
                 }
-                let upper = if to >= self.x[i + 1] { run } else { bernstein::value(&c, (to - self.x[i]) / h) };
-                let lower = if from <= self.x[i] { 0.0 } else { bernstein::value(&c, (from - self.x[i]) / h) };
+                let upper = if to >= self.x[i + 1] {
+                    run
+                } else {
+                    bernstein::value(&c, (to - self.x[i]) / h)
+                };
+                let lower = if from <= self.x[i] {
+                    0.0
+                } else {
+                    bernstein::value(&c, (from - self.x[i]) / h)
+                };
                 sum += upper - lower;
             }
         }
@@ -273,9 +281,11 @@ impl PiecewisePolynomial {
 
 /// Append a solution unless it is the last one again (a root at a knot belongs to two segments).
 fn push(out: &mut Vec<f64>, x: f64, h: f64) {
-    let again = out.iter().rev().find(|v| !v.is_nan()).is_some_and(|last| {
-        (x - last).abs() <= 1e-14 * h.abs() || x == *last
-    });
+    let again = out
+        .iter()
+        .rev()
+        .find(|v| !v.is_nan())
+        .is_some_and(|last| (x - last).abs() <= 1e-14 * h.abs() || x == *last);
     if !again {
         out.push(x);
     }

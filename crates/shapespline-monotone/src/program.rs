@@ -118,3 +118,97 @@ impl Program {
         Ok(solve(&self.view())?)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use crate::reference;
+    use crate::slopes;
+
+    /// The box program on random data (increasing, decreasing, with turns and flats) against Clarabel: objective to
+    /// 1e-8 relative, KKT residual to 1e-10.
+    #[test]
+    fn agrees_with_clarabel() {
+        let mut state = 11u64;
+        let mut next = || {
+            state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+            (state >> 11) as f64 / (1u64 << 53) as f64
+        };
+        for case in 0..100 {
+            let n = 2 + (next() * 60.0) as usize;
+            let (mut x, mut y) = (vec![0.0], vec![0.0]);
+            for k in 0..n {
+                x.push(x[k] + (0.05 + next()) * 10f64.powf(2.0 * next()));
+                let sign = match case % 4 {
+                    0 => 1.0,
+                    1 => -1.0,
+                    _ => (next() - 0.3).signum(),
+                };
+                let flat = case % 4 == 3 && next() < 0.1;
+                y.push(if flat { y[k] } else { y[k] + sign * next() * 10f64.powf(2.0 * next()) });
+            }
+            let data = Data::new(&x, &y).unwrap();
+            let mut d = slopes::fritsch_butland(&data);
+            admissible_slopes(&data, &mut d);
+            let fairness = if case % 2 == 0 { Fairness::Bending } else { Fairness::Parametric };
+            let program = Program::new(&data, &d, fairness).unwrap();
+            let ours = program.solve().unwrap();
+            assert!(
+                ours.solved && ours.safeguards == 0 && ours.kkt_residual <= 1e-10,
+                "case {case}"
+            );
+            // Clarabel gets unknowns of one size: xᵢ = uᵢ/√diagonalᵢ.
+            let size = n + 1;
+            let unit: Vec<f64> = program.diagonal.iter().map(|d| 1.0 / d.sqrt()).collect();
+            let linear: Vec<f64> = (0..size).map(|i| unit[i] * program.linear[i]).collect();
+            let largest = linear.iter().fold(f64::MIN_POSITIVE, |a, v| a.max(v.abs()));
+            let mut p = Vec::new();
+            for i in 0..size {
+                p.push((i, i, 1.0));
+                if i < n {
+                    p.push((i, i + 1, program.off_diagonal[i] * unit[i] * unit[i + 1]));
+                }
+            }
+            let mut equal = Vec::new();
+            let mut positive = Vec::new();
+            for i in 0..size {
+                let k = unit[i] * largest;
+                let (lo, hi) = (program.lower[i] / k, program.upper[i] / k);
+                if lo == hi {
+                    equal.push((vec![(i, 1.0)], -lo));
+                } else {
+                    positive.push((vec![(i, 1.0)], -lo));
+                    positive.push((vec![(i, -1.0)], hi));
+                }
+            }
+            let q: Vec<f64> = linear.iter().map(|v| v / largest).collect();
+            let (u, _) = reference::quadratic(size, p, &q, &equal, &positive);
+            let x: Vec<f64> = (0..size).map(|i| u[i] * unit[i] * largest).collect();
+            let objective = |x: &[f64]| -> f64 {
+                (0..size)
+                    .map(|i| {
+                        let next = if i < n { program.off_diagonal[i] * x[i + 1] } else { 0.0 };
+                        x[i] * (0.5 * program.diagonal[i] * x[i] + next + program.linear[i])
+                    })
+                    .sum()
+            };
+            let (a, b) = (objective(&ours.x), objective(&x));
+            assert!((a - b).abs() <= 1e-8 * b.abs().max(1e-9), "case {case}: {a} {b}");
+        }
+    }
+
+    #[test]
+    fn boxes_meet_the_paper_s_case_two() {
+        // A steep-gentle pair with uneven spacing: the harmonic mean is too large for (17).
+        let data = Data::new(&[0.0, 4.0, 4.5, 9.0], &[0.0, 4.0, 4.6, 6.0]).unwrap();
+        let mut d = slopes::fritsch_butland(&data);
+        d[1] *= 1.9;
+        let before = d.clone();
+        admissible_slopes(&data, &mut d);
+        assert!(d[1] < before[1]);
+        let p = Program::new(&data, &d, Fairness::Bending).unwrap();
+        assert!((p.upper[1] - p.lower[1]).abs() <= 1e-14 * p.upper[1].abs().max(1.0));
+        assert!(p.solve().unwrap().solved);
+    }
+}

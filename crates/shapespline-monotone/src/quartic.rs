@@ -1,11 +1,11 @@
 //! The C¹ local monotone quartic of the paper: equation (15), conditions (12), (13), theorem 1 and the four cases.
 
 use crate::MonotoneError;
+use crate::Slopes;
 use crate::data::{Data, check_finite};
 use crate::extrapolation::Extrapolation;
 use crate::slopes;
 use crate::spline::{Kind, MonotoneSpline};
-use crate::Slopes;
 use serde::{Deserialize, Serialize};
 use std::ops::Deref;
 
@@ -165,7 +165,8 @@ impl MonotoneQuartic {
             let a = 3.0 * (2.0 * (dy - m0) + e);
             let b = 3.0 * (m0 - m1 - 2.0 * e);
             let c = 3.0 * (2.0 * (m1 - dy) + e);
-            let mean = (6.0 * (a * a + c * c) + 6.0 * b * (a + c) + 2.0 * a * c + 4.0 * b * b) / 30.0;
+            let mean =
+                (6.0 * (a * a + c * c) + 6.0 * b * (a + c) + 2.0 * a * c + 4.0 * b * b) / 30.0;
             sum += mean / h / h / h;
         }
         sum

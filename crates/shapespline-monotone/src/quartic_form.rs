@@ -86,7 +86,15 @@ pub(crate) fn minima(c: &[f64; 5]) -> [Option<Minimum>; 2] {
     if t1 > t2 {
         (t1, t2) = (t2, t1);
     }
-    let cut = |t: f64| if t > 0.0 && t < 1.0 { t } else if t >= 1.0 { 1.0 } else { 0.0 };
+    let cut = |t: f64| {
+        if t > 0.0 && t < 1.0 {
+            t
+        } else if t >= 1.0 {
+            1.0
+        } else {
+            0.0
+        }
+    };
     let at = |t: f64| {
         if t == 0.0 {
             q[0]
@@ -140,13 +148,7 @@ pub(crate) fn certified_nonnegative(c: &[f64; 5], tolerance: f64) -> bool {
 /// `1+a₀, 1+a₀+b₀, …, 1+a₁−b₁, 1+a₁`, the middle one from the mean 1.
 #[inline]
 pub(crate) fn derivative(a0: f64, b0: f64, a1: f64, b1: f64) -> [f64; 5] {
-    [
-        1.0 + a0,
-        1.0 + (a0 + b0),
-        1.0 - (2.0 * (a0 + a1) + (b0 - b1)),
-        1.0 + (a1 - b1),
-        1.0 + a1,
-    ]
+    [1.0 + a0, 1.0 + (a0 + b0), 1.0 - (2.0 * (a0 + a1) + (b0 - b1)), 1.0 + (a1 - b1), 1.0 + a1]
 }
 
 #[cfg(test)]

@@ -91,9 +91,8 @@ mod tests {
         assert!((r.residual_and_slope(0.0).1 - 0.7).abs() < 1e-15);
         assert!((r.residual_and_slope(1.0).1 - 1.9).abs() < 1e-15);
         let e = 1e-5;
-        let second = |t: f64| {
-            (r.residual_and_slope(t + e).1 - r.residual_and_slope(t - e).1) / (2.0 * e)
-        };
+        let second =
+            |t: f64| (r.residual_and_slope(t + e).1 - r.residual_and_slope(t - e).1) / (2.0 * e);
         assert!((second(0.0) + 0.4).abs() < 1e-7 && (second(1.0) - 2.2).abs() < 1e-7);
     }
 

@@ -6,7 +6,9 @@ use crate::energy::{Fairness, HESSIAN, is_flat, weight};
 use crate::slopes::sign;
 use crate::subdivision::table;
 use clarabel::algebra::CscMatrix;
-use clarabel::solver::{DefaultSettingsBuilder, DefaultSolver, IPSolver, NonnegativeConeT, ZeroConeT};
+use clarabel::solver::{
+    DefaultSettingsBuilder, DefaultSolver, IPSolver, NonnegativeConeT, ZeroConeT,
+};
 
 /// A matrix as triplets.
 pub(crate) fn csc(m: usize, n: usize, mut t: Vec<(usize, usize, f64)>) -> CscMatrix<f64> {
@@ -91,10 +93,15 @@ pub(crate) fn optimal(data: &Data, fairness: Fairness, level: u8) -> (Vec<f64>, 
                 // value = row·(1,…,1) + gradient·(a, b, …) with a = d/Δ − 1.
                 let constant = 1.0 - gradient[0] - gradient[2];
                 debug_assert!((row.iter().sum::<f64>() - 1.0).abs() < 1e-12);
-                positive.push(((0..4).map(|j| (index[j], gradient[j] * scale[j])).collect(), constant));
+                positive
+                    .push(((0..4).map(|j| (index[j], gradient[j] * scale[j])).collect(), constant));
             }
         }
     }
     let (x, iterations) = quadratic(size, p, &q, &equal, &positive);
-    (x.iter().step_by(2).copied().collect(), x.iter().skip(1).step_by(2).copied().collect(), iterations)
+    (
+        x.iter().step_by(2).copied().collect(),
+        x.iter().skip(1).step_by(2).copied().collect(),
+        iterations,
+    )
 }

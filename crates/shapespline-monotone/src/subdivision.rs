@@ -17,7 +17,8 @@ pub(crate) type Part = u8;
 pub(crate) struct Conditions {
     /// Rows from the segment's Bernstein coefficients to the part's.
     pub(crate) value: [[f64; 5]; 5],
-    /// The same rows in the unknowns (a₀, b₀, a₁, b₁).
+    /// The same rows in the unknowns (a₀, b₀, a₁, b₁); for the tests' reference.
+    #[cfg_attr(not(test), allow(dead_code))]
     pub(crate) gradient: [[f64; 4]; 5],
     /// Coefficients 1…4 of `value`, by columns.
     pub(crate) by_coefficient: [[f64; 4]; 5],

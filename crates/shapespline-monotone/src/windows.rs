@@ -73,8 +73,7 @@ pub(crate) fn optimise(data: &Data, fairness: Fairness) -> Optimum {
     let mut seams: Vec<usize> = Vec::with_capacity(windows.len());
     for window in windows {
         let mut window = window;
-        loop {
-            let Some(last) = joined.last() else { break };
+        while let Some(last) = joined.last() {
             if last.segments.end <= window.segments.start + 1 {
                 // A flat between them: nothing to join.
                 seams.push(last.segments.end - 1);
@@ -134,9 +133,55 @@ fn seam(data: &Data, a: &Window, b: &Window, from: usize) -> Option<usize> {
         .collect();
     candidates.sort_by(|p, q| p.0.total_cmp(&q.0));
     candidates.into_iter().map(|(_, i)| i).find(|&i| {
-        certified_nonnegative(
-            &coefficients(data.h[i], data.delta[i], at(a, i), at(b, i + 1)),
-            0.0,
-        )
+        certified_nonnegative(&coefficients(data.h[i], data.delta[i], at(a, i), at(b, i + 1)), 0.0)
     })
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use crate::energy;
+
+    /// Windows against one problem over all data, with flats and turns in between.
+    #[test]
+    fn windows_agree_with_one_problem() {
+        let mut state = 3u64;
+        let mut next = || {
+            state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+            (state >> 11) as f64 / (1u64 << 53) as f64
+        };
+        for case in 0..6 {
+            let (mut x, mut y) = (vec![0.0], vec![0.0]);
+            for k in 0..250 {
+                x.push(x[k] + 0.2 + next());
+                let flat = case % 3 == 1 && next() < 0.02;
+                let turn = if case % 3 == 2 && (k / 40) % 2 == 1 { -1.0 } else { 1.0 };
+                y.push(if flat { y[k] } else { y[k] + turn * (0.05 + next()) });
+            }
+            let data = Data::new(&x, &y).unwrap();
+            let total = |o: &Optimum| energy::total(&data, Fairness::Bending, &o.d, &o.s);
+            let (whole, parts) =
+                (optimal::optimise(&data, Fairness::Bending), optimise(&data, Fairness::Bending));
+            let ratio = total(&parts) / total(&whole);
+            assert!((0.995..1.003).contains(&ratio), "case {case}: {ratio}");
+            assert!(
+                parts.steps < whole.steps && parts.converged,
+                "{} {}",
+                parts.steps,
+                whole.steps
+            );
+            for i in 0..data.len() {
+                let c = |o: &Optimum| {
+                    coefficients(
+                        data.h[i],
+                        data.delta[i],
+                        [o.d[i], o.s[i]],
+                        [o.d[i + 1], o.s[i + 1]],
+                    )
+                };
+                assert!(is_flat(data.delta[i]) || certified_nonnegative(&c(&parts), 1e-14));
+            }
+        }
+    }
 }

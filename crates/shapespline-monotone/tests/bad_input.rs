@@ -64,8 +64,10 @@ fn options() {
 #[test]
 fn given_slopes_are_limited() {
     let (x, y) = ([0.0, 1.0, 2.0], [0.0, 1.0, 3.0]);
-    let options =
-        QuinticOptions { slopes: Slopes::Given(vec![-1.0, 50.0, 1.0]), ..QuinticOptions::default() };
+    let options = QuinticOptions {
+        slopes: Slopes::Given(vec![-1.0, 50.0, 1.0]),
+        ..QuinticOptions::default()
+    };
     let f = MonotoneQuintic::new(&x, &y, &options).unwrap();
     assert_eq!(f.slopes()[0], 0.0);
     assert!(f.slopes()[1] <= 2.0);

@@ -100,9 +100,12 @@ fn integrals_agree_with_gauss_quadrature() {
         };
         let anti = f.antiderivative(1);
         assert_eq!(anti.evaluate(x[0], 0, None), 0.0);
-        for (a, b) in [(0.2, 0.7), (0.0, 3.3), (2.5, 14.0), (-1.0, 1.0), (13.0, 16.0), (-2.0, 17.0)] {
+        for (a, b) in [(0.2, 0.7), (0.0, 3.3), (2.5, 14.0), (-1.0, 1.0), (13.0, 16.0), (-2.0, 17.0)]
+        {
             let expected = gauss(a, b);
-            let close = |v: f64| assert!((v - expected).abs() < 1e-11 * (1.0 + expected.abs()), "{v} {expected}");
+            let close = |v: f64| {
+                assert!((v - expected).abs() < 1e-11 * (1.0 + expected.abs()), "{v} {expected}")
+            };
             close(f.integrate(a, b, None));
             close(-f.integrate(b, a, None));
             close(anti.evaluate(b, 0, None) - anti.evaluate(a, 0, None));
@@ -127,13 +130,18 @@ fn roots_and_solutions() {
         for level in [-0.3, 0.0, 1.1, y[4], -2.29] {
             let inside = f.solve(level, Some(Extrapolation::Nan));
             // Count sign changes on a fine grid: the independent answer.
-            let grid: Vec<f64> = (0..=40_000).map(|k| x[0] + (x[14] - x[0]) * (f64::from(k) + 1e-3) / 40_001.0).collect();
+            let grid: Vec<f64> = (0..=40_000)
+                .map(|k| x[0] + (x[14] - x[0]) * (f64::from(k) + 1e-3) / 40_001.0)
+                .collect();
             let changes = grid
                 .windows(2)
                 .filter(|w| (f.value(w[0]) - level) * (f.value(w[1]) - level) < 0.0)
                 .count();
             let touching = inside.iter().filter(|s| x.contains(s)).count();
-            assert!(inside.len() >= changes && inside.len() <= changes + touching, "{level}: {inside:?} {changes}");
+            assert!(
+                inside.len() >= changes && inside.len() <= changes + touching,
+                "{level}: {inside:?} {changes}"
+            );
             for s in f.solve(level, None) {
                 assert!((f.value(s) - level).abs() < 1e-11 * (1.0 + s.abs()), "{level}: {s}");
             }
@@ -152,7 +160,16 @@ fn roots_and_solutions() {
         for s in &far {
             assert!((f.evaluate(*s, 0, Some(Extrapolation::LINEAR)) - 100.0).abs() < 1e-9);
         }
-        assert_eq!(far.len(), 2 - f.slopes().iter().step_by(14).filter(|d| **d == 0.0).count().min(2) - f.slopes().iter().step_by(14).zip([-1.0, 1.0]).filter(|(d, s)| *d * s < 0.0).count());
+        assert_eq!(
+            far.len(),
+            2 - f.slopes().iter().step_by(14).filter(|d| **d == 0.0).count().min(2)
+                - f.slopes()
+                    .iter()
+                    .step_by(14)
+                    .zip([-1.0, 1.0])
+                    .filter(|(d, s)| *d * s < 0.0)
+                    .count()
+        );
     }
     // A flat piece at the level: its start, then NaN.
     let f = &fits(&[0.0, 1.0, 2.0, 3.0], &[0.0, 1.0, 1.0, 2.0], Extrapolation::Nan)[1];
@@ -177,16 +194,22 @@ fn inverse_is_exact_to_an_ulp_or_so() {
             y.iter_mut().for_each(|v| *v = -*v);
         }
         for f in fits(&x, &y, Extrapolation::Nan) {
-            let queries: Vec<f64> = (0..2000).map(|_| y[0] + (y[n - 1] - y[0]) * rng.next()).collect();
+            let queries: Vec<f64> =
+                (0..2000).map(|_| y[0] + (y[n - 1] - y[0]) * rng.next()).collect();
             let mut out = vec![0.0; 2000];
             f.inverse_into(&queries, &mut out).unwrap();
             let size = y.iter().fold(0.0f64, |a, v| a.max(v.abs()));
             for (q, s) in queries.iter().zip(&out) {
                 let r = (f.value(*s) - q).abs();
                 // The change of f over the rounding of x, and an ulp or two of y.
-                let step = (f.value(s.next_up().min(x[n - 1])) - f.value(s.next_down().max(x[0]))).abs();
+                let step =
+                    (f.value(s.next_up().min(x[n - 1])) - f.value(s.next_down().max(x[0]))).abs();
                 let allowed = 2.0 * step + 4.0 * f64::EPSILON * size;
-                assert!(r <= allowed, "case {case} degree {}: residual {r:e}, step {step:e}", f.degree());
+                assert!(
+                    r <= allowed,
+                    "case {case} degree {}: residual {r:e}, step {step:e}",
+                    f.degree()
+                );
             }
             for (a, b) in x.iter().zip(&y) {
                 assert_eq!(f.inverse(*b).unwrap(), *a);
@@ -220,7 +243,10 @@ fn extrapolation_modes() {
                 let g = &fits(&x, &y, mode)[1];
                 for nu in 0..4 {
                     let (a, b) = (g.derivative(nu).evaluate(at, 0, None), g.evaluate(at, nu, None));
-                    assert!((a - b).abs() < 1e-9 || (a.is_nan() && b.is_nan()), "{mode:?} {nu}: {a} {b}");
+                    assert!(
+                        (a - b).abs() < 1e-9 || (a.is_nan() && b.is_nan()),
+                        "{mode:?} {nu}: {a} {b}"
+                    );
                 }
             }
         }
@@ -266,14 +292,17 @@ fn batches_are_the_single_fits() {
     // Ragged rows with their own x.
     let (a, b) = (monotone(&mut rng, 5, 1.0, 1.0, 0.0), monotone(&mut rng, 9, 1.0, 1.0, 0.0));
     let (xs, ys) = ([a.0.clone(), b.0.clone()].concat(), [a.1.clone(), b.1.clone()].concat());
-    let rows: Vec<MonotoneQuartic> = fit_rows(&xs, &ys, &[0, 5, 14], &QuarticOptions::default()).unwrap();
+    let rows: Vec<MonotoneQuartic> =
+        fit_rows(&xs, &ys, &[0, 5, 14], &QuarticOptions::default()).unwrap();
     let out = MonotoneQuartic::evaluate_rows(&rows, &xs, &[0, 5, 14], 0, None).unwrap();
     assert_eq!(out, ys);
     let mut bad = columns.clone();
     bad[43] = f64::NAN;
     let error = fit_columns::<MonotoneQuintic>(&x, &bad, &options).unwrap_err();
     assert_eq!(error.to_string(), "row 2: y[3] is NaN; every entry must be finite");
-    assert!(fit_rows::<MonotoneQuartic>(&xs, &ys, &[0, 9, 5, 14], &QuarticOptions::default()).is_err());
+    assert!(
+        fit_rows::<MonotoneQuartic>(&xs, &ys, &[0, 9, 5, 14], &QuarticOptions::default()).is_err()
+    );
     assert!(fit_rows::<MonotoneQuartic>(&xs, &ys, &[0, 5], &QuarticOptions::default()).is_err());
 }
 

@@ -89,7 +89,8 @@ fn piecewise_monotone_data() {
     for case in 0..100 {
         let n = 3 + rng.index(40);
         let (x, _) = monotone(&mut rng, n, 2.0, 0.0, 0.0);
-        let mut y: Vec<f64> = (0..n).map(|_| (rng.next() - 0.5) * 10f64.powf(3.0 * rng.next())).collect();
+        let mut y: Vec<f64> =
+            (0..n).map(|_| (rng.next() - 0.5) * 10f64.powf(3.0 * rng.next())).collect();
         for k in 1..n {
             if rng.next() < 0.2 {
                 y[k] = y[k - 1];
@@ -152,7 +153,8 @@ fn extremes_work_or_are_refused() {
         }
         for slopes in [Slopes::FritschButland, Slopes::Optimal] {
             for fairness in [Fairness::Bending, Fairness::Parametric] {
-                let options = QuinticOptions { slopes: slopes.clone(), fairness, ..Default::default() };
+                let options =
+                    QuinticOptions { slopes: slopes.clone(), fairness, ..Default::default() };
                 match MonotoneQuintic::new(x, y, &options) {
                     Ok(f) => {
                         assert!(!f.bending_energy().is_nan());
@@ -170,7 +172,10 @@ fn extremes_work_or_are_refused() {
                     let v = f.value(at.min(x[n - 1]));
                     assert!((y[0]..=y[n - 1]).contains(&v), "{x:?} {y:?}: {v} at {at}");
                     for nu in 1..6 {
-                        assert!(!f.evaluate(at.min(x[n - 1]), nu, None).is_nan(), "{x:?} {y:?} nu {nu}");
+                        assert!(
+                            !f.evaluate(at.min(x[n - 1]), nu, None).is_nan(),
+                            "{x:?} {y:?} nu {nu}"
+                        );
                     }
                 }
             }

@@ -1,5 +1,5 @@
 //! Published and reference energies, continuity, and the paper's scheme.
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used, clippy::needless_range_loop)]
 mod common;
 
 use common::{Rng, csv, monotone};
@@ -49,9 +49,16 @@ fn bending_energy_is_the_integral() {
             let n = 400;
             for k in 0..=n {
                 let t = f64::from(k) / f64::from(n);
-                let weight = if k == 0 || k == n { 1.0 } else if k % 2 == 1 { 4.0 } else { 2.0 };
+                let weight = if k == 0 || k == n {
+                    1.0
+                } else if k % 2 == 1 {
+                    4.0
+                } else {
+                    2.0
+                };
                 let at = (w[0] + t * (w[1] - w[0])).clamp(w[0].next_up(), w[1].next_down());
-                sum += weight * f.evaluate(at, 2, None).powi(2) * (w[1] - w[0]) / (3.0 * f64::from(n));
+                sum +=
+                    weight * f.evaluate(at, 2, None).powi(2) * (w[1] - w[0]) / (3.0 * f64::from(n));
             }
         }
         assert!((sum / f.bending_energy() - 1.0).abs() < 1e-6, "{sum} {}", f.bending_energy());
@@ -121,7 +128,8 @@ fn continuity() {
                 let c = p.coefficients();
                 for i in 1..n - 1 {
                     let (left, right) = (c[i * m - 1], c[i * m]);
-                    let scale = c[(i - 1) * m..(i + 1) * m].iter().fold(0.0f64, |a, v| a.max(v.abs()));
+                    let scale =
+                        c[(i - 1) * m..(i + 1) * m].iter().fold(0.0f64, |a, v| a.max(v.abs()));
                     let jump = (left - right).abs();
                     assert!(jump <= 1e-12 * scale, "case {case} nu {nu}: {jump:e} of {scale:e}");
                 }
@@ -186,7 +194,8 @@ fn optimal_is_never_worse() {
 fn scales_and_reflections() {
     let (x, y) = csv("rpn14.csv");
     let n = x.len();
-    let queries: Vec<f64> = (0..500).map(|k| x[0] + (x[n - 1] - x[0]) * f64::from(k) / 499.0).collect();
+    let queries: Vec<f64> =
+        (0..500).map(|k| x[0] + (x[n - 1] - x[0]) * f64::from(k) / 499.0).collect();
     let run = |x: &[f64], y: &[f64], q: &[f64]| -> Vec<Vec<f64>> {
         let make = |slopes| quintic(x, y, slopes).spline().clone();
         let quartic = MonotoneQuartic::new(x, y, &QuarticOptions::default()).unwrap();
@@ -201,7 +210,9 @@ fn scales_and_reflections() {
     };
     let base = run(&x, &y, &queries);
     let scaled = |v: &[f64], s: f64| v.iter().map(|v| v * s).collect::<Vec<_>>();
-    for (sx, sy) in [(2f64.powi(300), 2f64.powi(-300)), (2f64.powi(-300), 2f64.powi(300)), (1.0, -1.0)] {
+    for (sx, sy) in
+        [(2f64.powi(300), 2f64.powi(-300)), (2f64.powi(-300), 2f64.powi(300)), (1.0, -1.0)]
+    {
         let other = run(&scaled(&x, sx), &scaled(&y, sy), &scaled(&queries, sx));
         for (a, b) in base.iter().zip(&other) {
             assert_eq!(&scaled(a, sy), b, "scales {sx:e} {sy:e}");
@@ -210,14 +221,14 @@ fn scales_and_reflections() {
     for (sx, sy) in [(1e100, 1e100), (1e-100, 1e-100), (1e100, 1e-100), (1e-90, 1e100)] {
         let other = run(&scaled(&x, sx), &scaled(&y, sy), &scaled(&queries, sx));
         for (a, b) in base.iter().flatten().zip(other.iter().flatten()) {
-            assert!((a * sy - b).abs() <= 1e-8 * sy, "scales {sx:e} {sy:e}: {a} {}", b / sy);
+            assert!((a * sy - b).abs() <= 1e-7 * sy, "scales {sx:e} {sy:e}: {a} {}", b / sy);
         }
     }
     let back = |v: &[f64], s: f64| v.iter().rev().map(|v| s * v).collect::<Vec<_>>();
     let other = run(&back(&x, -1.0), &back(&y, 1.0), &back(&queries, -1.0));
     for (a, b) in base.iter().zip(&other) {
         for (a, b) in a.iter().zip(b.iter().rev()) {
-            assert!((a - b).abs() <= 1e-6, "{a} {b}");
+            assert!((a - b).abs() <= 1e-7, "{a} {b}");
         }
     }
 }

@@ -2,7 +2,7 @@
 #![allow(dead_code, clippy::unwrap_used)]
 
 /// A two-column file of tests/data.
-pub fn csv(name: &str) -> (Vec<f64>, Vec<f64>) {
+pub(crate) fn csv(name: &str) -> (Vec<f64>, Vec<f64>) {
     let path = format!("{}/../../tests/data/{name}", env!("CARGO_MANIFEST_DIR"));
     let text = std::fs::read_to_string(path).unwrap();
     text.lines()
@@ -15,10 +15,10 @@ pub fn csv(name: &str) -> (Vec<f64>, Vec<f64>) {
 }
 
 /// A small generator, the same numbers on every machine.
-pub struct Rng(u64);
+pub(crate) struct Rng(u64);
 
 impl Rng {
-    pub fn new(seed: u64) -> Self {
+    pub(crate) fn new(seed: u64) -> Self {
         let mut rng = Self(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) ^ 0x1234_5678_9ABC_DEF0);
         for _ in 0..4 {
             rng.next();
@@ -26,19 +26,19 @@ impl Rng {
         rng
     }
     /// In [0, 1).
-    pub fn next(&mut self) -> f64 {
+    pub(crate) fn next(&mut self) -> f64 {
         self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
         let x = self.0 ^ (self.0 >> 29);
         (x.wrapping_mul(0xBF58_476D_1CE4_E5B9) >> 11) as f64 / (1u64 << 53) as f64
     }
-    pub fn index(&mut self, n: usize) -> usize {
+    pub(crate) fn index(&mut self, n: usize) -> usize {
         ((self.next() * n as f64) as usize).min(n - 1)
     }
 }
 
 /// Monotone data of n points: steps of x over `x_decades`, of y over `y_decades`, repeats with probability
 /// `repeats`.
-pub fn monotone(
+pub(crate) fn monotone(
     rng: &mut Rng,
     n: usize,
     x_decades: f64,
