@@ -35,7 +35,7 @@ const START: f64 = 10.0;
 const RESTART: (f64, f64) = (3.0, 0.4);
 /// Refinements, and the relative gap at which one is made.
 const PHASES: usize = 2;
-const COARSE: f64 = 0.3;
+const COARSE: f64 = 1e-6;
 /// Halvings a refinement may make.
 const LEVELS: usize = 4;
 /// A part of length 2⁻ˡ is halved when one of its coefficients is below this times 2⁻ˡ: the coefficients of a part
@@ -292,7 +292,7 @@ impl<'a> Problem<'a> {
             let after = a + alpha * (b + alpha * c);
             outcome.gap = after / self.energy;
             self.mu = after / self.weights;
-            if phase < PHASES && residual < 0.1 && outcome.gap < COARSE {
+            if phase < PHASES && residual < 1e-3 && outcome.gap < COARSE {
                 phase += 1;
                 residual = 1.0;
                 if self.restart() {
