@@ -5,10 +5,17 @@ const DEPTH: u32 = 50;
 
 /// The value at t (de Casteljau; also outside [0, 1]).
 pub(crate) fn value(b: &[f64], t: f64) -> f64 {
-    let mut w = [0.0f64; 24];
+    // Degrees beyond the array's come from antiderivatives of high order only.
+    let mut array = [0.0f64; 12];
+    let mut vector;
     let n = b.len();
-    debug_assert!(n <= w.len());
-    w[..n].copy_from_slice(b);
+    let w: &mut [f64] = if n <= array.len() {
+        array[..n].copy_from_slice(b);
+        &mut array
+    } else {
+        vector = b.to_vec();
+        &mut vector
+    };
     let u = 1.0 - t;
     for k in (1..n).rev() {
         for j in 0..k {

@@ -38,7 +38,8 @@ impl From<PiecewisePolynomial> for Parts {
 impl TryFrom<Parts> for PiecewisePolynomial {
     type Error = String;
     fn try_from(p: Parts) -> Result<Self, String> {
-        if p.x.len() < 2 || p.degree > 20 || p.c.len() != (p.x.len() - 1) * (p.degree + 1) {
+        if p.x.len() < 2 || p.c.len() != (p.x.len() - 1).saturating_mul(p.degree.saturating_add(1))
+        {
             return Err("stored piecewise polynomial is inconsistent".to_owned());
         }
         Ok(Self::new(p.x, p.degree, p.c, p.extrapolate))
@@ -130,6 +131,9 @@ impl PiecewisePolynomial {
                 }
                 _ => f64::NAN,
             };
+        }
+        if nu == 0 {
+            return bernstein::value(self.piece(i), (x - self.x[i]) / h);
         }
         let mut c = self.piece(i).to_vec();
         for _ in 0..nu {

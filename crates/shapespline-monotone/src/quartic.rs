@@ -27,6 +27,21 @@ pub enum Shape {
     },
 }
 
+impl Shape {
+    /// (α, β) of segment i.
+    #[inline]
+    fn at(&self, i: usize) -> (f64, f64) {
+        match self {
+            Self::Uniform(a) => (*a, *a),
+            // Lengths are checked when fitting; damaged stored data must not panic.
+            Self::Segments { alpha, beta } => {
+                let entry = |v: &[f64]| v.get(i).copied().unwrap_or(f64::NAN);
+                (entry(alpha), entry(beta))
+            }
+        }
+    }
+}
+
 impl Default for Shape {
     fn default() -> Self {
         Self::Uniform(3.0)
@@ -52,8 +67,7 @@ pub struct QuarticOptions {
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct MonotoneQuartic {
     spline: MonotoneSpline,
-    alpha: Vec<f64>,
-    beta: Vec<f64>,
+    shape: Shape,
     scale: Vec<f64>,
 }
 
@@ -88,36 +102,33 @@ impl MonotoneQuartic {
                 });
             }
         };
-        let (mut alpha, mut beta) = match &options.shape {
-            Shape::Uniform(a) => {
-                check_shape("shape", &[*a])?;
-                (vec![*a; n], vec![*a; n])
-            }
+        match &options.shape {
+            Shape::Uniform(a) => check_shape("shape", &[*a])?,
             Shape::Segments { alpha, beta } => {
                 for (argument, values) in [("alpha", alpha), ("beta", beta)] {
                     check_length(argument, values, n)?;
                     check_shape(argument, values)?;
                 }
-                (alpha.clone(), beta.clone())
             }
-        };
-        let mut scale = vec![1.0; n];
+        }
+        let mut scale = Vec::with_capacity(n);
         let mut e = Vec::with_capacity(n);
         for i in 0..n {
             let delta = data.delta[i];
             if delta == 0.0 {
                 e.push(0.0);
+                scale.push(1.0);
                 continue;
             }
+            let (alpha, beta) = options.shape.at(i);
             // In units of the secant everything is of order one.
-            let (m0, m1) = (d[i] / delta, d[i + 1] / delta);
-            let full = 2.0 / 3.0 * (alpha[i] * m0 - beta[i] * m1);
+            let inverse = 1.0 / delta;
+            let exact = inverse.is_finite() && inverse != 0.0;
+            let over = |d: f64| if exact { d * inverse } else { d / delta };
+            let (m0, m1) = (over(d[i]), over(d[i + 1]));
+            let full = 2.0 / 3.0 * (alpha * m0 - beta * m1);
             let lambda = largest_scale(m0, m1, full);
-            if lambda < 1.0 {
-                alpha[i] *= lambda;
-                beta[i] *= lambda;
-                scale[i] = lambda;
-            }
+            scale.push(lambda);
             e.push(lambda * full * (delta * data.h[i]));
         }
         let spline =
@@ -125,19 +136,19 @@ impl MonotoneQuartic {
         if let Some(i) = spline.d.iter().position(|d| !d.is_finite()) {
             return Err(crate::data::out_of_range("secant slope", "y", i, y[i]));
         }
-        Ok(Self { spline, alpha, beta, scale })
+        Ok(Self { spline, shape: options.shape.clone(), scale })
     }
 
     /// α of every segment, after scaling.
     #[must_use]
-    pub fn alpha(&self) -> &[f64] {
-        &self.alpha
+    pub fn alpha(&self) -> Vec<f64> {
+        self.scale.iter().enumerate().map(|(i, l)| l * self.shape.at(i).0).collect()
     }
 
     /// β of every segment, after scaling.
     #[must_use]
-    pub fn beta(&self) -> &[f64] {
-        &self.beta
+    pub fn beta(&self) -> Vec<f64> {
+        self.scale.iter().enumerate().map(|(i, l)| l * self.shape.at(i).1).collect()
     }
 
     /// λ of every segment: 1 where the starting values were kept.

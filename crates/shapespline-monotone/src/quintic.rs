@@ -123,7 +123,12 @@ impl MonotoneQuintic {
         };
         let bending = energy::total(&data, Fairness::Bending, &d, &s);
         let bending_energy = data.energy_out(Fairness::Bending, bending);
-        diagnostics.energy = data.energy_out(fairness, energy::total(&data, fairness, &d, &s));
+        diagnostics.energy = match fairness {
+            Fairness::Bending => bending_energy,
+            Fairness::Parametric => {
+                data.energy_out(fairness, energy::total(&data, fairness, &d, &s))
+            }
+        };
         diagnostics.certified = certified(&data, &d, &s);
         let spline =
             MonotoneSpline::quintic(&data, x.to_vec(), y.to_vec(), &d, &s, options.extrapolate);
