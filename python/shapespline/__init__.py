@@ -11,6 +11,7 @@ True
 
 from shapespline import plot
 from shapespline._core import (
+    CatmullRom,
     Diagnostics,
     NuSpline,
     SearchStep,
@@ -18,19 +19,25 @@ from shapespline._core import (
     ShapeReport,
     SpaceCurve,
     Tangents,
+    TensionSpline,
     __version__,
 )
 from shapespline._errors import ConvergenceError
+from shapespline._many import Fits, fit_many
 
 __all__ = [
+    "CatmullRom",
     "ConvergenceError",
     "Diagnostics",
+    "Fits",
     "NuSpline",
     "SearchStep",
     "ShapeRecord",
     "ShapeReport",
     "SpaceCurve",
     "Tangents",
+    "TensionSpline",
     "__version__",
+    "fit_many",
     "plot",
 ]

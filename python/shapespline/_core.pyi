@@ -13,6 +13,7 @@ from typing_extensions import Self, disjoint_base
 __version__: str
 
 __all__ = [
+    "CatmullRom",
     "Diagnostics",
     "NuSpline",
     "SearchStep",
@@ -20,15 +21,21 @@ __all__ = [
     "ShapeReport",
     "SpaceCurve",
     "Tangents",
+    "TensionSpline",
     "__version__",
     "_curve_from_bytes",
+    "_fit_many",
     "_report_from_bytes",
 ]
 
 _Floats = NDArray[np.float64]
 _Side = Literal["left", "right"]
-_Criterion = Literal["convexity", "inflection", "torsion", "coplanarity", "collinearity"]
+_Criterion = Literal[
+    "convexity", "inflection", "torsion", "coplanarity", "collinearity", "global-convexity"
+]
 _Boundary = Literal["zero-curvature", "natural", "periodic", "circular"]
+_Strategy = Literal["nussp", "growth", "fairest", "reduction"]
+_Continuity = Literal["C1", "G1"]
 _Parametrization = Literal["uniform", "chordal", "centripetal"]
 # An array or nested lists: what gives an array back where one number gives a number.
 _Many = NDArray[np.generic] | Sequence[float] | Sequence[Sequence[float]]
@@ -125,7 +132,7 @@ class NuSpline(SpaceCurve):
         *,
         boundary: _Boundary | Tangents = "zero-curvature",
         criteria: _Criterion | Iterable[_Criterion] | None = None,
-        strategy: Literal["nussp", "growth", "fairest"] = "fairest",
+        strategy: _Strategy = "fairest",
         step: float = 0.5,
         coplanarity: float = 0.2,
         collinearity: float = 0.2,
@@ -134,6 +141,72 @@ class NuSpline(SpaceCurve):
     ) -> NuSpline: ...
     def __copy__(self) -> NuSpline: ...
     def __deepcopy__(self, _memo: object) -> NuSpline: ...
+
+@final
+class TensionSpline(SpaceCurve):
+    def __new__(
+        cls,
+        points: ArrayLike,
+        parameters: _Parametrization | float | ArrayLike = "chordal",
+        *,
+        boundary: _Boundary | Tangents = "natural",
+        tangent_scale: float | ArrayLike | tuple[ArrayLike, ArrayLike] = 1.0,
+    ) -> TensionSpline: ...
+    @classmethod
+    def shape_preserving(
+        cls,
+        points: ArrayLike,
+        parameters: _Parametrization | float | ArrayLike = "chordal",
+        *,
+        boundary: _Boundary | Tangents = "natural",
+        criteria: _Criterion | Iterable[_Criterion] | None = None,
+        strategy: _Strategy = "fairest",
+        step: float | None = None,
+        coplanarity: float = 0.2,
+        collinearity: float = 0.2,
+        tolerance: float = 1e-9,
+        max_iterations: int | None = None,
+    ) -> TensionSpline: ...
+    @property
+    def tangent_scale(self) -> tuple[_Floats, _Floats]: ...
+    @overload
+    def image_parameter(self, u: float) -> float: ...
+    @overload
+    def image_parameter(self, u: _Many) -> _Floats: ...
+    @overload
+    def image_parameter(self, u: ArrayLike) -> float | _Floats: ...
+    def __copy__(self) -> TensionSpline: ...
+    def __deepcopy__(self, _memo: object) -> TensionSpline: ...
+
+@final
+class CatmullRom(SpaceCurve):
+    def __new__(
+        cls,
+        points: ArrayLike,
+        parameters: _Parametrization | float | ArrayLike = "centripetal",
+        *,
+        boundary: _Boundary | Tangents = "natural",
+        tension: float | ArrayLike = 0.0,
+        continuity: _Continuity = "C1",
+    ) -> CatmullRom: ...
+    @classmethod
+    def shape_preserving(
+        cls,
+        points: ArrayLike,
+        parameters: _Parametrization | float | ArrayLike = "centripetal",
+        *,
+        boundary: _Boundary | Tangents = "natural",
+        criteria: _Criterion | Iterable[_Criterion] | None = None,
+        safety: float = 0.9,
+        continuity: _Continuity = "C1",
+        coplanarity: float = 0.2,
+        collinearity: float = 0.2,
+        tolerance: float = 1e-9,
+    ) -> CatmullRom: ...
+    @property
+    def continuity(self) -> _Continuity: ...
+    def __copy__(self) -> CatmullRom: ...
+    def __deepcopy__(self, _memo: object) -> CatmullRom: ...
 
 @final
 class Tangents:
@@ -234,3 +307,23 @@ class SearchStep:
 
 def _curve_from_bytes(data: bytes) -> SpaceCurve: ...
 def _report_from_bytes(data: bytes) -> ShapeReport: ...
+def _fit_many(
+    points: ArrayLike,
+    offsets: ArrayLike,
+    method: str,
+    parameters: _Parametrization | float | ArrayLike,
+    boundary: _Boundary | Tangents,
+    shape_preserving: bool,
+    threads: int | None,
+    criteria: _Criterion | Iterable[_Criterion] | None,
+    coplanarity: float,
+    collinearity: float,
+    tolerance: float,
+    strategy: _Strategy,
+    step: float | None,
+    max_iterations: int | None,
+    safety: float,
+    continuity: _Continuity,
+    tension: float,
+    tangent_scale: float,
+) -> tuple[list[SpaceCurve | None], dict[int, Exception]]: ...

@@ -15,6 +15,11 @@ pub(crate) fn fit_error(error: FitError) -> PyErr {
     PyValueError::new_err(error.to_string())
 }
 
+/// No curve `k` of many.
+pub(crate) fn curve_error(k: usize, error: &FitError) -> PyErr {
+    PyValueError::new_err(format!("curve {k}: {error}"))
+}
+
 /// The search ended early: the exception carries the last curve and the report on it.
 pub(crate) fn convergence_error(
     py: Python<'_>,

@@ -106,6 +106,30 @@ impl<'py> FromPyObject<'_, 'py> for Points {
     }
 }
 
+/// Where the rows of a collection begin, and where the last one ends.
+pub(crate) struct Offsets(pub(crate) Vec<usize>);
+
+impl<'py> FromPyObject<'_, 'py> for Offsets {
+    type Error = PyErr;
+
+    fn extract(object: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
+        let array = array("offsets", &object)?;
+        let [_] = array.shape() else {
+            let text = format!("offsets must have one axis, got shape {}", array.shape_text());
+            return Err(PyValueError::new_err(text));
+        };
+        // f64 holds every index of an array that fits into memory.
+        let index = |(i, &x): (usize, &f64)| {
+            if x >= 0.0 && x.fract() == 0.0 && x < 9e15 {
+                return Ok(x as usize);
+            }
+            let text = format!("offsets[{i}] must be an integer from 0, got {x}");
+            Err(PyValueError::new_err(text))
+        };
+        array.values().iter().enumerate().map(index).collect::<PyResult<_>>().map(Self)
+    }
+}
+
 /// One number, or an array of them.
 pub(crate) enum Numbers {
     One(f64),

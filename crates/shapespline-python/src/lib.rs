@@ -1,7 +1,7 @@
 //! The Python face of shapespline: arrays in and out, options by name, errors to exceptions.
 //!
 //! No mathematics lives here. Every space curve is a `SpaceCurve`; a family adds its own
-//! constructors (`NuSpline`). The package `python/shapespline` around this module holds what
+//! constructors (`NuSpline`, `TensionSpline`, `CatmullRom`). The package `python/shapespline` around this module holds what
 //! is better written in Python: figures and the command line.
 
 // Doc comments on Python classes are numpydoc docstrings: `points[0]` in them is no link.
@@ -10,16 +10,20 @@
 use mimalloc::MiMalloc;
 use pyo3::prelude::*;
 
+mod catmull_rom;
 mod curve;
 mod diagnostics;
 mod error;
+mod fit;
 mod input;
+mod many;
 mod nu;
 mod options;
 mod output;
 mod pickle;
 mod report;
 mod tangents;
+mod tension;
 mod work;
 
 /// A fit of a million points takes and gives back a dozen arrays of tens of megabytes. The C library
@@ -33,6 +37,8 @@ static ALLOCATOR: MiMalloc = MiMalloc;
 fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<curve::SpaceCurve>()?;
     module.add_class::<nu::NuSpline>()?;
+    module.add_class::<tension::TensionSpline>()?;
+    module.add_class::<catmull_rom::CatmullRom>()?;
     module.add_class::<tangents::Tangents>()?;
     module.add_class::<report::ShapeReport>()?;
     module.add_class::<report::ShapeRecord>()?;
@@ -40,6 +46,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<diagnostics::SearchStep>()?;
     module.add_function(wrap_pyfunction!(pickle::_curve_from_bytes, module)?)?;
     module.add_function(wrap_pyfunction!(pickle::_report_from_bytes, module)?)?;
+    module.add_function(wrap_pyfunction!(many::_fit_many, module)?)?;
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
     curve::document_call(module.py())
 }

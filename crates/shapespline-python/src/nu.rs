@@ -1,45 +1,14 @@
 //! `NuSpline`: what is particular to ν-splines.
 
-use std::sync::Arc;
-
 use pyo3::{PyClassInitializer, prelude::*, types::PyType};
-use shapespline::{
-    criteria::Criterion,
-    geometry::DataPolygon,
-    nu::{self, Fit, FitError, SearchOptions, Status, Strategy, Tension},
-};
+use shapespline::nu::{self, Strategy};
 
 use crate::{
     curve::SpaceCurve,
-    diagnostics::Search,
-    error::{convergence_error, fit_error},
-    input::{Numbers, Points, numbers},
-    options::{self, CriteriaNames, Ends, Parameters, tolerances},
-    report::ShapeReport,
-    work::interruptible,
+    fit::{Data, Failure, Searching, build, preserve},
+    input::Points,
+    options::{self, CriteriaNames, Ends, NodalTension, Parameters},
 };
-
-/// `tension`: one number, or one a point.
-pub(crate) struct NodalTension(Numbers);
-
-impl<'py> FromPyObject<'_, 'py> for NodalTension {
-    type Error = PyErr;
-
-    fn extract(object: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
-        numbers("tension", &object).map(Self)
-    }
-}
-
-impl NodalTension {
-    const NONE: Self = Self(Numbers::One(0.0));
-
-    fn tension(&self) -> Tension<'_> {
-        match &self.0 {
-            Numbers::One(value) => Tension::Uniform(*value),
-            Numbers::Many(values) => Tension::Nodes(values),
-        }
-    }
-}
 
 /// ν-spline: a curve with continuous tangent and curvature (G²) through points, with tension.
 ///
@@ -108,15 +77,8 @@ impl NuSpline {
         boundary: Ends,
         tension: NodalTension,
     ) -> PyResult<PyClassInitializer<Self>> {
-        let Points { points, dimension } = points;
-        let boundary = boundary.of(dimension)?;
-        // One pass after another along the points: nothing here runs on several threads.
-        let build = || -> Result<_, FitError> {
-            let polygon = DataPolygon::with_dimension(points, dimension, &parameters.0, boundary)?;
-            nu::NuSpline::new(polygon, tension.tension())
-        };
-        let curve = py.detach(build).map_err(fit_error)?;
-        let base = SpaceCurve::of(Arc::new(curve), None);
+        let data = Data::new(points, parameters, boundary)?;
+        let base = build(py, data, |polygon| nu::NuSpline::new(polygon, tension.tension()))?;
         Ok(PyClassInitializer::from(base).add_subclass(Self))
     }
 
@@ -211,48 +173,14 @@ impl NuSpline {
         #[pyo3(from_py_with = options::tolerance)] tolerance: f64,
         #[pyo3(from_py_with = options::max_iterations)] max_iterations: Option<usize>,
     ) -> PyResult<Py<PyAny>> {
-        let py = class.py();
-        let Points { points, dimension } = points;
-        let boundary = boundary.of(dimension)?;
-        let search = SearchOptions {
-            criteria: criteria.0,
-            tolerances: tolerances(coplanarity, collinearity, tolerance)?,
-            strategy,
-            step,
-            max_iterations,
-        };
-        let fit = interruptible(py, points.len(), |monitor| -> Result<_, FitError> {
-            let polygon = DataPolygon::with_dimension(points, dimension, &parameters.0, boundary)?;
+        let data = Data::new(points, parameters, boundary)?;
+        let search = Searching { criteria, strategy, step, max_iterations }.options(
+            coplanarity,
+            collinearity,
+            tolerance,
+        )?;
+        preserve(class.py(), data, &Failure::from(&search), |polygon, monitor| {
             nu::NuSpline::shape_preserving_with(polygon, &search, &mut |_| monitor())
-        })?
-        .map_err(fit_error)?;
-        finish(py, fit, &search)
+        })
     }
-}
-
-/// The curve of a fit that ended well, or the exception that carries it.
-fn finish(py: Python<'_>, fit: Fit<nu::NuSpline>, options: &SearchOptions) -> PyResult<Py<PyAny>> {
-    let Fit { curve, outcome, report } = fit;
-    let (status, iterations) = (outcome.diagnostics.status, outcome.diagnostics.iterations);
-    let search = Search { diagnostics: outcome.diagnostics, history: outcome.history };
-    let base = SpaceCurve::of(Arc::new(curve), Some(search));
-    if status == Status::Solved {
-        return base.into_python(py);
-    }
-    let violations: Vec<String> = Criterion::ALL
-        .iter()
-        .map(|&criterion| (report.count(criterion).violated, criterion.name()))
-        .filter(|(violated, _)| *violated > 0)
-        .map(|(violated, name)| format!("{name} on {violated}"))
-        .collect();
-    let message = format!(
-        "the shape is not preserved after {iterations} iterations: of {} segments, {} violate it; \
-         raise max_iterations (this exception carries the last curve and its report)",
-        report.segments,
-        violations.join(", "),
-    );
-    let curve = Arc::clone(&base.curve);
-    let report = ShapeReport::of(report, curve, options.criteria, options.tolerances);
-    let report = Py::new(py, report)?.into_any();
-    Err(convergence_error(py, message, base.into_python(py)?, report))
 }

@@ -5,9 +5,11 @@ use pyo3::{
     prelude::*,
 };
 use shapespline::{
+    catmull_rom::Continuity,
     criteria::{Criteria, Criterion, Tolerances},
     geometry::{Boundary, Dimension, Parametrization, Side},
-    nu::Strategy,
+    search::{SearchOptions, Strategy, Tension},
+    tension::TensionSpline,
 };
 
 use crate::{
@@ -43,6 +45,44 @@ pub(crate) fn strategy(object: &Bound<'_, PyAny>) -> PyResult<Strategy> {
     choose("strategy", &name("strategy", object)?, &Strategy::NAMED)
 }
 
+pub(crate) fn continuity(object: &Bound<'_, PyAny>) -> PyResult<Continuity> {
+    let kinds = [("C1", Continuity::C1), ("G1", Continuity::G1)];
+    choose("continuity", &name("continuity", object)?, &kinds)
+}
+
+/// The name of what is continuous.
+pub(crate) fn continuity_name(continuity: Continuity) -> &'static str {
+    match continuity {
+        Continuity::C1 => "C1",
+        Continuity::G1 => "G1",
+    }
+}
+
+/// A family by the name that `fit_many` knows it by.
+#[derive(Clone, Copy)]
+pub(crate) enum Method {
+    Nu,
+    Tension,
+    CatmullRom,
+}
+
+impl Method {
+    /// The step of a strategy where none is given.
+    pub(crate) fn default_step(self, strategy: Strategy) -> f64 {
+        match self {
+            // As published for the reduction, else tuned for 1/λ − 1.
+            Self::Tension if strategy != Strategy::Reduction => TensionSpline::options().step,
+            _ => SearchOptions::default().step,
+        }
+    }
+}
+
+pub(crate) fn method(object: &Bound<'_, PyAny>) -> PyResult<Method> {
+    let names =
+        [("nu", Method::Nu), ("tension", Method::Tension), ("catmull-rom", Method::CatmullRom)];
+    choose("method", &name("method", object)?, &names)
+}
+
 /// What is even between samples.
 #[derive(Clone, Copy)]
 pub(crate) enum Spacing {
@@ -68,6 +108,21 @@ pub(crate) fn max_iterations(object: &Bound<'_, PyAny>) -> PyResult<Option<usize
 }
 pub(crate) fn step(object: &Bound<'_, PyAny>) -> PyResult<f64> {
     float("step", object)
+}
+pub(crate) fn optional_step(object: &Bound<'_, PyAny>) -> PyResult<Option<f64>> {
+    if object.is_none() { Ok(None) } else { step(object).map(Some) }
+}
+pub(crate) fn threads(object: &Bound<'_, PyAny>) -> PyResult<Option<usize>> {
+    if object.is_none() { Ok(None) } else { count("threads", 1, object).map(Some) }
+}
+pub(crate) fn tension(object: &Bound<'_, PyAny>) -> PyResult<f64> {
+    float("tension", object)
+}
+pub(crate) fn tangent_scale(object: &Bound<'_, PyAny>) -> PyResult<f64> {
+    float("tangent_scale", object)
+}
+pub(crate) fn safety(object: &Bound<'_, PyAny>) -> PyResult<f64> {
+    float("safety", object)
 }
 pub(crate) fn coplanarity(object: &Bound<'_, PyAny>) -> PyResult<f64> {
     float("coplanarity", object)
@@ -102,6 +157,7 @@ pub(crate) struct Parameters(pub(crate) Parametrization);
 
 impl Parameters {
     pub(crate) const CHORDAL: Self = Self(Parametrization::Chordal);
+    pub(crate) const CENTRIPETAL: Self = Self(Parametrization::Centripetal);
 }
 
 impl<'py> FromPyObject<'_, 'py> for Parameters {
@@ -124,6 +180,28 @@ impl<'py> FromPyObject<'_, 'py> for Parameters {
             Numbers::One(exponent) => Parametrization::Exponent(exponent),
             Numbers::Many(values) => Parametrization::Given(values),
         }))
+    }
+}
+
+/// `tension`: one number, or one a point.
+pub(crate) struct NodalTension(Numbers);
+
+impl<'py> FromPyObject<'_, 'py> for NodalTension {
+    type Error = PyErr;
+
+    fn extract(object: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
+        numbers("tension", &object).map(Self)
+    }
+}
+
+impl NodalTension {
+    pub(crate) const NONE: Self = Self(Numbers::One(0.0));
+
+    pub(crate) fn tension(&self) -> Tension<'_> {
+        match &self.0 {
+            Numbers::One(value) => Tension::Uniform(*value),
+            Numbers::Many(values) => Tension::Nodes(values),
+        }
     }
 }
 

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use pyo3::{exceptions::PyValueError, prelude::*};
 use serde::{Serialize, de::DeserializeOwned};
+use shapespline::prelude::{CatmullRom, NuSpline, TensionSpline};
 
 use crate::{
     curve::{Curve, Family, SpaceCurve},
@@ -41,14 +42,16 @@ fn read_curve(bytes: &mut &[u8]) -> PyResult<(Arc<dyn Curve>, Option<Search>)> {
         None => return Err(damaged("they are empty")),
     }
     let (family, search): (Family, Option<Search>) = take(bytes)?;
-    let curve = match family {
-        Family::Nu => Arc::new(take::<shapespline::nu::NuSpline>(bytes)?),
+    let curve: Arc<dyn Curve> = match family {
+        Family::Nu => Arc::new(take::<NuSpline>(bytes)?),
+        Family::Tension => Arc::new(take::<TensionSpline>(bytes)?),
+        Family::CatmullRom => Arc::new(take::<CatmullRom>(bytes)?),
     };
     // What no constructor makes would panic later.
     let points = curve.cubic().points().len();
     let lengths =
         [curve.cubic().knots().len(), curve.cubic().segments() + 1, curve.tension().len()];
-    if points < 2 || lengths.iter().any(|&length| length != points) {
+    if points < 2 || lengths.iter().any(|&length| length != points) || !curve.is_sound() {
         return Err(damaged("lengths do not agree"));
     }
     Ok((curve, search))

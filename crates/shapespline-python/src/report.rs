@@ -178,7 +178,8 @@ impl ShapeReport {
             let checker = Checker::new(&polygon, self.criteria, self.tolerances);
             let legs = self.curve.cubic().legs();
             let of = |i: usize| {
-                let record = |criterion| make(checker.record(i, legs[i], criterion));
+                let located = |record| self.curve.located(record);
+                let record = |criterion| make(located(checker.record(i, legs[i], criterion)));
                 self.criteria.iter().map(record).collect::<Vec<T>>()
             };
             Ok(if segments <= 2 * BLOCK {

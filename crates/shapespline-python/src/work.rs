@@ -54,6 +54,11 @@ pub(crate) fn detached<T: Send>(py: Python<'_>, size: usize, work: impl FnOnce()
 /// A search's question whether to go on.
 pub(crate) type Monitor<'a> = &'a mut (dyn FnMut() -> ControlFlow<()> + Send);
 
+/// Whether Ctrl-C was not pressed.
+fn go_on(stop: &AtomicBool) -> ControlFlow<()> {
+    if stop.load(Ordering::Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+}
+
 /// Runs a search over `size` items that asks a monitor at each step whether to go on; Ctrl-C ends it
 /// with `KeyboardInterrupt`.
 pub(crate) fn interruptible<T: Send>(
@@ -65,11 +70,24 @@ pub(crate) fn interruptible<T: Send>(
         py.detach(|| alone(search))
     } else {
         py.detach(|| match pool() {
-            Some(pool) => watched(&pool, search),
+            Some(pool) => watched(&pool, |stop| search(&mut || go_on(stop))),
             None => alone(search),
         })
     };
     // What came in while the last step ran.
+    py.check_signals()?;
+    done
+}
+
+/// Runs many searches at once, which ask the same question (of a function, for any thread may ask).
+pub(crate) fn interruptible_many<T: Send>(
+    py: Python<'_>,
+    searches: impl FnOnce(&(dyn Fn() -> ControlFlow<()> + Sync)) -> T + Send,
+) -> PyResult<T> {
+    let done = py.detach(|| match pool() {
+        Some(pool) => watched(&pool, |stop| searches(&|| go_on(stop))),
+        None => Ok(searches(&|| ControlFlow::Continue(()))),
+    });
     py.check_signals()?;
     done
 }
@@ -91,7 +109,7 @@ fn alone<T>(search: impl FnOnce(Monitor<'_>) -> T) -> PyResult<T> {
 /// The search runs in the pool; this thread, which may be the one that signals reach, watches.
 fn watched<T: Send>(
     pool: &ThreadPool,
-    search: impl FnOnce(Monitor<'_>) -> T + Send,
+    search: impl FnOnce(&AtomicBool) -> T + Send,
 ) -> PyResult<T> {
     let stop = AtomicBool::new(false);
     let (sender, receiver) = mpsc::channel();
@@ -99,13 +117,7 @@ fn watched<T: Send>(
     let mut result = None;
     pool.in_place_scope(|scope| {
         scope.spawn(|_| {
-            result = Some(search(&mut || {
-                if stop.load(Ordering::Relaxed) {
-                    ControlFlow::Break(())
-                } else {
-                    ControlFlow::Continue(())
-                }
-            }));
+            result = Some(search(&stop));
             // The watcher may have gone: then nobody waits for this.
             let _ = sender.send(());
         });

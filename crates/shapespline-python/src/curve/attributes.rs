@@ -69,7 +69,8 @@ impl SpaceCurve {
     /// The tension at each point, shape (n,), without unit: 0 is none, and more of it pulls the curve
     /// towards the polygon; a fresh array.
     ///
-    /// For a ν-spline this is ν. Of closed data the first and the last point are one node and have
+    /// For a ν-spline this is ν, for a `TensionSpline` 1/λ − 1 (of the smaller λ beside the point), and
+    /// for a `CatmullRom` the part by which its handles were shortened. Of closed data the first and the last point are one node and have
     /// one tension.
     ///
     /// Examples
@@ -191,7 +192,7 @@ impl SpaceCurve {
         let report = detached(py, cubic.segments(), || {
             let polygon = self.curve.polygon()?;
             let checker = Checker::new(&polygon, criteria, tolerances);
-            Ok(checker.report(|i| cubic.legs()[i]))
+            Ok(self.curve.with_locations(checker.report(|i| cubic.legs()[i])))
         })
         .map_err(input_error)?;
         Ok(ShapeReport::of(report, self.curve.clone(), criteria, tolerances))

@@ -42,7 +42,7 @@ impl SpaceCurve {
     }
 
     /// A number for each parameter: a float for one, an array of the query's shape for many.
-    fn scalar<'py>(
+    pub(crate) fn scalar<'py>(
         &self,
         py: Python<'py>,
         u: &Query<'py>,
@@ -109,7 +109,7 @@ impl SpaceCurve {
     /// Raises
     /// ------
     /// ValueError
-    ///     If ``nu`` is negative or ``side`` unknown.
+    ///     If ``nu`` is negative (of a `TensionSpline`, or above 3) or ``side`` unknown.
     /// TypeError
     ///     If ``u`` does not hold real numbers.
     ///
@@ -136,16 +136,26 @@ impl SpaceCurve {
         #[pyo3(from_py_with = options::nu)] nu: usize,
         #[pyo3(from_py_with = options::side)] side: Side,
     ) -> PyResult<FloatArray<'py>> {
-        // From the fourth derivative on all are zero.
+        // From the fourth derivative on all are zero, or refused.
         let order = nu.min(4);
         let columns = self.columns();
         match u {
-            Query::One(u) => Ok(vector(py, self.curve.evaluate(u, order, side), columns)),
+            // The fourth, which not every curve has, is left to what can say so.
+            Query::One(u) if order < 4 => {
+                Ok(vector(py, self.curve.path().evaluate(u, order, side), columns))
+            }
+            Query::One(u) => {
+                let mut value = [0.0; 3];
+                let path = self.curve.path();
+                path.evaluate_many(&[u], order, side, &mut value[..columns])
+                    .map_err(input_error)?;
+                Ok(vector(py, DVec3::from_array(value), columns))
+            }
             Query::Many(u) => {
                 let parameters = u.values();
                 let mut values = zeros(parameters.len(), columns)?;
                 detached(py, parameters.len(), || {
-                    self.curve.evaluate_many(parameters, order, side, &mut values)
+                    self.curve.path().evaluate_many(parameters, order, side, &mut values)
                 })
                 .map_err(input_error)?;
                 shaped(py, values, &with_columns(u.shape(), columns))
@@ -160,7 +170,8 @@ impl SpaceCurve {
     /// u : array_like
     ///     Parameters, of any shape.
     /// side : {"right", "left"}
-    ///     Which segment counts at the parameter of a point. (κ of a ν-spline does not jump.)
+    ///     Which segment counts at the parameter of a point. (κ of a ν-spline or a
+    ///     C² tension cubic does not jump.)
     ///
     /// Returns
     /// -------
@@ -183,10 +194,7 @@ impl SpaceCurve {
         u: Query<'py>,
         #[pyo3(from_py_with = options::side)] side: Side,
     ) -> PyResult<Bound<'py, PyAny>> {
-        self.scalar(py, &u, move |curve, u| {
-            let (segment, t) = curve.cubic().locate(u, side);
-            curve.cubic().segment(segment).curvature(t)
-        })
+        self.scalar(py, &u, move |curve, u| curve.path().curvature(u, side))
     }
 
     /// Curvature vector dT/ds: curvature times principal normal, in reciprocal units of the points.
@@ -215,10 +223,7 @@ impl SpaceCurve {
         u: Query<'py>,
         #[pyo3(from_py_with = options::side)] side: Side,
     ) -> PyResult<FloatArray<'py>> {
-        self.vectors(py, &u, self.columns(), move |curve, u| {
-            let (segment, t) = curve.cubic().locate(u, side);
-            curve.cubic().segment(segment).curvature_vector(t)
-        })
+        self.vectors(py, &u, self.columns(), move |curve, u| curve.path().curvature_vector(u, side))
     }
 
     /// Torsion τ = det[γ′, γ″, γ‴] / ‖γ′ × γ″‖², in reciprocal units of the points.
@@ -251,10 +256,7 @@ impl SpaceCurve {
         u: Query<'py>,
         #[pyo3(from_py_with = options::side)] side: Side,
     ) -> PyResult<Bound<'py, PyAny>> {
-        self.scalar(py, &u, move |curve, u| {
-            let (segment, t) = curve.cubic().locate(u, side);
-            curve.cubic().segment(segment).torsion(t)
-        })
+        self.scalar(py, &u, move |curve, u| curve.path().torsion(u, side))
     }
 
     /// The Frenet frame: unit tangent T, principal normal N and binormal B = T × N.
@@ -286,10 +288,7 @@ impl SpaceCurve {
         u: Query<'py>,
         #[pyo3(from_py_with = options::side)] side: Side,
     ) -> PyResult<(FloatArray<'py>, FloatArray<'py>, FloatArray<'py>)> {
-        let frame = move |curve: &dyn Curve, u: f64| {
-            let (segment, t) = curve.cubic().locate(u, side);
-            curve.cubic().segment(segment).frame(t)
-        };
+        let frame = move |curve: &dyn Curve, u: f64| curve.path().frame(u, side);
         Ok((
             self.vectors(py, &u, 3, move |curve, u| frame(curve, u).tangent)?,
             self.vectors(py, &u, 3, move |curve, u| frame(curve, u).normal)?,

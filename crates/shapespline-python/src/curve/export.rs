@@ -33,7 +33,8 @@ impl SpaceCurve {
 impl SpaceCurve {
     /// Bézier points of the segments, shape (segments, 4, dim); a fresh array.
     ///
-    /// Each segment is run through linearly in its interval of the parameter.
+    /// Each segment is run through linearly in its interval of the parameter, except by a
+    /// `TensionSpline`, which has a parameter of its own: see its ``image_parameter``.
     ///
     /// Examples
     /// --------
@@ -60,7 +61,8 @@ impl SpaceCurve {
     /// -------
     /// scipy.interpolate.BSpline
     ///     Cubic, with triple interior knots, whose coefficients are the Bézier points: the same curve
-    ///     to the last rounding. Closed curves extrapolate periodically.
+    ///     to the last rounding. Closed curves extrapolate periodically. Of a `TensionSpline` it is
+    ///     the same image, but the parameter is that of its ``image_parameter``.
     ///
     /// Raises
     /// ------
@@ -98,6 +100,8 @@ impl SpaceCurve {
     /// -------
     /// scipy.interpolate.PPoly
     ///     Cubic, converted by SciPy from the Bézier points. Closed curves extrapolate periodically.
+    ///     Of a `TensionSpline` it is the same image, but the parameter is that of its
+    ///     ``image_parameter``.
     ///
     /// Raises
     /// ------

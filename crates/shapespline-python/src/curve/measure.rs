@@ -52,7 +52,7 @@ impl SpaceCurve {
         let cubic = self.curve.cubic();
         let knots = cubic.knots();
         let (a, b) = (a.unwrap_or(knots[0]), b.unwrap_or(knots[knots.len() - 1]));
-        detached(py, cubic.segments(), || ArcLength::new(cubic).between(a, b))
+        detached(py, cubic.segments(), || ArcLength::new(self.curve.path()).between(a, b))
     }
 
     /// Points on the curve from its first to its last point, evenly spaced.
@@ -106,7 +106,7 @@ impl SpaceCurve {
                     *u = if i == end && i > 0 { last } else { first + part(i) * (last - first) };
                 }),
                 Spacing::ArcLength => {
-                    let lengths = ArcLength::new(cubic);
+                    let lengths = ArcLength::new(self.curve.path());
                     let total = lengths.total();
                     let of = |(i, u): (usize, &mut f64)| *u = lengths.parameter(part(i) * total);
                     if n < 1024 {
@@ -120,7 +120,7 @@ impl SpaceCurve {
                     }
                 }
             }
-            self.curve.evaluate_many(&u, 0, Side::Right, &mut values)
+            self.curve.path().evaluate_many(&u, 0, Side::Right, &mut values)
         })
         .map_err(input_error)?;
         shaped(py, values, &[n, columns])

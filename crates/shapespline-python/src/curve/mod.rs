@@ -4,16 +4,19 @@
 //! own with the constructors; everything else is inherited. One file a group of methods:
 //! [`attributes`], [`evaluate`], [`measure`], [`export`].
 
-use std::{fmt::Debug, sync::Arc};
+use std::{any::Any, fmt::Debug, sync::Arc};
 
 use pyo3::{PyClass, PyClassInitializer, exceptions::PyTypeError, prelude::*, types::PyBytes};
 use shapespline::{
-    geometry::{Boundary, DVec3, DataPolygon, InputError, PiecewiseCubic, Side},
+    catmull_rom::CatmullRom,
+    criteria::{Record, ShapeReport},
+    geometry::{self, Boundary, DVec3, DataPolygon, InputError, PiecewiseCubic, Side},
     nu::NuSpline,
     search::Interpolant,
+    tension::TensionSpline,
 };
 
-use crate::{diagnostics::Search, nu, pickle, work::detached};
+use crate::{catmull_rom, diagnostics::Search, nu, pickle, tension, work::detached};
 
 mod attributes;
 mod evaluate;
@@ -25,11 +28,49 @@ mod measure;
 pub(crate) enum Family {
     /// ν-splines.
     Nu,
+    /// C² tension cubics.
+    Tension,
+    /// Catmull–Rom curves.
+    CatmullRom,
+}
+
+/// A family of curves: what the crate of its mathematics does not say.
+pub(crate) trait Member:
+    Interpolant + Debug + Send + Sync + serde::Serialize + 'static
+{
+    const FAMILY: Family;
+
+    /// Whether what serde cannot know holds: of a curve that any constructor made it does.
+    fn is_sound(&self) -> bool {
+        true
+    }
+}
+
+impl Member for NuSpline {
+    const FAMILY: Family = Family::Nu;
+}
+
+impl Member for TensionSpline {
+    const FAMILY: Family = Family::Tension;
+
+    fn is_sound(&self) -> bool {
+        let slopes = self.tangent_scale();
+        let valid = |x: &f64| *x > 0.0 && *x <= 1.0;
+        slopes.len() == Curve::cubic(self).segments() && slopes.iter().flatten().all(valid)
+    }
+}
+
+impl Member for CatmullRom {
+    const FAMILY: Family = Family::CatmullRom;
 }
 
 /// A space curve of any family.
 pub(crate) trait Curve: Debug + Send + Sync {
     fn family(&self) -> Family;
+    /// For what only one family has.
+    fn as_any(&self) -> &dyn Any;
+    /// The curve in its own parameter.
+    fn path(&self) -> &dyn geometry::Curve;
     /// The cubic Bézier segments.
     fn cubic(&self) -> &PiecewiseCubic;
     /// One number a point, 0 = none.
@@ -38,32 +79,23 @@ pub(crate) trait Curve: Debug + Send + Sync {
     fn tangents(&self) -> Vec<DVec3>;
     fn boundary(&self) -> Boundary;
     fn polygon(&self) -> Result<DataPolygon, InputError>;
+    fn is_sound(&self) -> bool;
     /// Appends the curve in postcard's form.
     fn write(&self, bytes: Vec<u8>) -> Result<Vec<u8>, postcard::Error>;
-
-    /// Derivative of an order at one parameter.
-    fn evaluate(&self, u: f64, order: usize, side: Side) -> DVec3 {
-        self.cubic().evaluate(u, order, side)
-    }
-
-    /// Derivatives of an order at many parameters, row by row.
-    fn evaluate_many(
-        &self,
-        u: &[f64],
-        order: usize,
-        side: Side,
-        out: &mut [f64],
-    ) -> Result<(), InputError> {
-        self.cubic().evaluate_many(u, order, side, out)
-    }
 }
 
-impl Curve for NuSpline {
+impl<C: Member> Curve for C {
     fn family(&self) -> Family {
-        Family::Nu
+        C::FAMILY
+    }
+    fn as_any(&self) -> &dyn Any {
+        self
+    }
+    fn path(&self) -> &dyn geometry::Curve {
+        Interpolant::curve(self)
     }
     fn cubic(&self) -> &PiecewiseCubic {
-        Interpolant::curve(self)
+        geometry::Curve::cubic(Interpolant::curve(self))
     }
     fn tension(&self) -> &[f64] {
         Interpolant::tension(self)
@@ -77,14 +109,37 @@ impl Curve for NuSpline {
     fn polygon(&self) -> Result<DataPolygon, InputError> {
         Interpolant::polygon(self)
     }
+    fn is_sound(&self) -> bool {
+        Member::is_sound(self)
+    }
     fn write(&self, bytes: Vec<u8>) -> Result<Vec<u8>, postcard::Error> {
         postcard::to_extend(self, bytes)
     }
 }
 
+impl dyn Curve {
+    /// A record with its location in the curve's own parameter: the checker sees the image alone,
+    /// run through linearly on each segment.
+    pub(crate) fn located(&self, record: Record) -> Record {
+        if self.family() != Family::Tension || !record.location.is_finite() {
+            return record;
+        }
+        let (segment, t) = self.cubic().locate(record.location, Side::Right);
+        Record { location: self.path().parameter(segment, t), ..record }
+    }
+
+    /// A report of the checker, with every location in the curve's own parameter.
+    pub(crate) fn with_locations(&self, mut report: ShapeReport) -> ShapeReport {
+        for record in &mut report.violations {
+            *record = self.located(*record);
+        }
+        report
+    }
+}
+
 /// A curve through points in space or in the plane: the base of all families.
 ///
-/// Not made directly: use `NuSpline`. A curve is immutable, compares and hashes by identity, can be
+/// Not made directly: use `NuSpline`, `TensionSpline` or `CatmullRom`. A curve is immutable, compares and hashes by identity, can be
 /// pickled and copied, and may be used from several threads at once.
 ///
 /// Examples
@@ -110,6 +165,8 @@ impl SpaceCurve {
     pub(crate) fn into_python(self, py: Python<'_>) -> PyResult<Py<PyAny>> {
         match self.curve.family() {
             Family::Nu => self.with_class(py, nu::NuSpline),
+            Family::Tension => self.with_class(py, tension::TensionSpline),
+            Family::CatmullRom => self.with_class(py, catmull_rom::CatmullRom),
         }
     }
 
@@ -130,7 +187,9 @@ impl SpaceCurve {
 impl SpaceCurve {
     #[new]
     fn new() -> PyResult<Self> {
-        Err(PyTypeError::new_err("SpaceCurve is the base of the curves: make a NuSpline"))
+        Err(PyTypeError::new_err(
+            "SpaceCurve is the base of the curves: make a NuSpline, a TensionSpline or a CatmullRom",
+        ))
     }
 
     fn __repr__(slf: &Bound<'_, Self>) -> PyResult<String> {

@@ -1,0 +1,199 @@
+//! `CatmullRom`: what is particular to Catmull–Rom curves.
+
+use pyo3::{PyClassInitializer, prelude::*, types::PyType};
+use shapespline::catmull_rom::{self, Continuity, HandleOptions};
+
+use crate::{
+    curve::SpaceCurve,
+    fit::{Data, Failure, build, preserve},
+    input::Points,
+    options::{self, CriteriaNames, Ends, NodalTension, Parameters, tolerances},
+};
+
+/// Catmull–Rom curve: local cubic interpolation whose tangents lie between the chords.
+///
+/// Parameters
+/// ----------
+/// points : array_like, shape (n, 3) or (n, 2)
+///     Points to interpolate, n ≥ 2; neighbours must differ. Planar points give a planar curve.
+/// parameters : {"centripetal", "chordal", "uniform"}, float or array_like, shape (n,)
+///     Parameters of the points: by name, as the exponent e of ``u[i+1] - u[i] = ‖points[i+1] -
+///     points[i]‖**e``, or strictly increasing numbers.
+/// boundary : {"natural", "zero-curvature", "periodic", "circular"} or Tangents
+///     No second derivative at both ends (two names); closed data, whose last point is the first; end
+///     tangents of the circles through the first and the last three points; or given end tangents.
+/// tension : float or array_like, shape (n,)
+///     Cardinal tension in [0, 1), without unit: the part by which the handles at a point are
+///     shortened. 0 gives the Catmull–Rom curve, 1 would give the polygon. Of closed data, the first
+///     and the last entry must agree.
+/// continuity : {"C1", "G1"}
+///     Whether both handles at a point have one scale (the derivative is continuous), or only one
+///     direction. Without ``shape_preserving`` both give the same curve.
+///
+/// Raises
+/// ------
+/// ValueError
+///     If an argument holds unusable values: NaN, infinities, wrong shapes, repeated neighbours,
+///     parameters that do not increase, tension outside [0, 1), unknown names. The message says where.
+/// TypeError
+///     If an argument is of a wrong kind.
+///
+/// See Also
+/// --------
+/// CatmullRom.shape_preserving : finds the handles that the shape of the points needs.
+///
+/// Notes
+/// -----
+/// The tangent at a point is that of the parabola through it and its neighbours, at their parameters.
+/// A point moves the curve over two segments to either side. Of the shape criteria, torsion and
+/// coplanarity without inflection hold for every such curve: Gautam, *Shape preservation behavior of
+/// spline curves*, section 14. Cost O(n), on all threads for long curves.
+///
+/// Examples
+/// --------
+/// >>> import shapespline as ss
+/// >>> points = [[0, 0, 0], [4, 0, 0], [4.5, 0.5, 0], [4.5, 1, 0.5], [4.5, 1, 5]]
+/// >>> curve = ss.CatmullRom(points, tension=0.25)
+/// >>> curve
+/// <CatmullRom: 5 points in space, tension up to 0.25 at 5 of them; ...>
+/// >>> ss.CatmullRom([[0, 0], [1, 2], [4, 4]], "uniform").tangents[1]
+/// array([2., 2.])
+#[pyclass(module = "shapespline", frozen, extends = SpaceCurve)]
+pub(crate) struct CatmullRom;
+
+#[pymethods]
+impl CatmullRom {
+    #[new]
+    #[pyo3(
+        signature = (
+            points,
+            parameters=Parameters::CENTRIPETAL,
+            *,
+            boundary=Ends::ZERO_CURVATURE,
+            tension=NodalTension::NONE,
+            continuity=Continuity::C1,
+        ),
+        text_signature = "(points, parameters='centripetal', *, boundary='natural', tension=0.0, \
+                          continuity='C1')"
+    )]
+    fn new(
+        py: Python<'_>,
+        points: Points,
+        parameters: Parameters,
+        boundary: Ends,
+        tension: NodalTension,
+        #[pyo3(from_py_with = options::continuity)] continuity: Continuity,
+    ) -> PyResult<PyClassInitializer<Self>> {
+        let data = Data::new(points, parameters, boundary)?;
+        let base = build(py, data, |polygon| {
+            catmull_rom::CatmullRom::new(polygon, tension.tension(), continuity)
+        })?;
+        Ok(PyClassInitializer::from(base).add_subclass(Self))
+    }
+
+    /// The Catmull–Rom curve with the largest handles that keep the shape of the points.
+    ///
+    /// Parameters
+    /// ----------
+    /// points : array_like, shape (n, 3) or (n, 2)
+    ///     Points to interpolate, as for `CatmullRom`.
+    /// parameters : {"centripetal", "chordal", "uniform"}, float or array_like, shape (n,)
+    ///     Parameters of the points, as for `CatmullRom`.
+    /// boundary : {"natural", "zero-curvature", "periodic", "circular"} or Tangents
+    ///     End conditions, as for `CatmullRom`.
+    /// criteria : str or iterable of str, optional
+    ///     What to keep: any of ``"convexity"``, ``"inflection"``, ``"torsion"``, ``"coplanarity"``,
+    ///     ``"collinearity"`` and ``"global-convexity"``; default all but the last, which follows from
+    ///     the first.
+    /// safety : float
+    ///     The part, in (0, 1), of each bound that a handle may reach.
+    /// continuity : {"C1", "G1"}
+    ///     ``"C1"`` takes the smaller of the two scales at a point for both handles, ``"G1"`` lets each
+    ///     segment have its own.
+    /// coplanarity, collinearity, tolerance : float
+    ///     As for the method ``check``.
+    ///
+    /// Returns
+    /// -------
+    /// CatmullRom
+    ///     A curve that was checked completely and keeps every criterion. Its ``diagnostics`` count one
+    ///     iteration where the closed forms were enough.
+    ///
+    /// Raises
+    /// ------
+    /// ConvergenceError
+    ///     If what closed forms leave open (planes known only to the tolerance) is not met within 200
+    ///     checks; it carries the last curve and its report.
+    /// ValueError, TypeError
+    ///     As for `CatmullRom`, and for options outside their ranges.
+    ///
+    /// Notes
+    /// -----
+    /// Gautam, *Shape preservation behavior of spline curves*, section 14, gives the directions; the
+    /// largest magnitudes, in closed form, are this library's. Torsion holds for handles of any length.
+    /// Local; cost O(n), on all threads for long curves.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import shapespline as ss
+    /// >>> points = [[0, 0, 0], [4, 0, 0], [4.5, 0.5, 0], [4.5, 1, 0.5], [4.5, 1, 5]]
+    /// >>> ss.CatmullRom(points, "uniform").check().counts()["convexity"]
+    /// (2, 2)
+    /// >>> curve = ss.CatmullRom.shape_preserving(points, "uniform")
+    /// >>> curve.check().ok
+    /// True
+    #[classmethod]
+    #[pyo3(
+        signature = (
+            points,
+            parameters=Parameters::CENTRIPETAL,
+            *,
+            boundary=Ends::ZERO_CURVATURE,
+            criteria=CriteriaNames::ALL,
+            safety=0.9,
+            continuity=Continuity::C1,
+            coplanarity=0.2,
+            collinearity=0.2,
+            tolerance=1e-9,
+        ),
+        text_signature = "($type, points, parameters='centripetal', *, boundary='natural', \
+                          criteria=None, safety=0.9, continuity='C1', coplanarity=0.2, \
+                          collinearity=0.2, tolerance=1e-9)"
+    )]
+    // One argument a keyword: this is the signature that users see.
+    #[allow(clippy::too_many_arguments)]
+    fn shape_preserving(
+        class: &Bound<'_, PyType>,
+        points: Points,
+        parameters: Parameters,
+        boundary: Ends,
+        criteria: CriteriaNames,
+        #[pyo3(from_py_with = options::safety)] safety: f64,
+        #[pyo3(from_py_with = options::continuity)] continuity: Continuity,
+        #[pyo3(from_py_with = options::coplanarity)] coplanarity: f64,
+        #[pyo3(from_py_with = options::collinearity)] collinearity: f64,
+        #[pyo3(from_py_with = options::tolerance)] tolerance: f64,
+    ) -> PyResult<Py<PyAny>> {
+        let data = Data::new(points, parameters, boundary)?;
+        let (criteria, tolerances) =
+            (criteria.0, tolerances(coplanarity, collinearity, tolerance)?);
+        let options = HandleOptions { criteria, tolerances, safety, continuity };
+        preserve(class.py(), data, &Failure { criteria, tolerances }, |polygon, _| {
+            catmull_rom::CatmullRom::shape_preserving(polygon, &options)
+        })
+    }
+
+    /// What is continuous at the points besides the direction: ``"C1"`` or ``"G1"``.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import shapespline as ss
+    /// >>> ss.CatmullRom([[0, 0], [1, 2], [4, 4]]).continuity
+    /// 'C1'
+    #[getter]
+    fn continuity(slf: &Bound<'_, Self>) -> &'static str {
+        let curve = slf.as_super().get().curve.as_any();
+        let curve = curve.downcast_ref::<catmull_rom::CatmullRom>();
+        options::continuity_name(curve.map(catmull_rom::CatmullRom::continuity).unwrap_or_default())
+    }
+}

@@ -1,0 +1,148 @@
+//! `fit_many`: ragged collections of curves, fitted in parallel.
+//!
+//! The Python function of that name (`python/shapespline/_many.py`) fills in the defaults of each
+//! family; here every option has a value.
+
+use std::{ops::ControlFlow, sync::Arc};
+
+use pyo3::{
+    prelude::*,
+    types::{PyDict, PyList},
+};
+use shapespline::{
+    catmull_rom::{self, Continuity, HandleOptions},
+    geometry::{Boundary, DVec3, DataPolygon, Parametrization, Ragged},
+    nu::{self, Strategy},
+    search::{Collection, Fit, FitError, Tension, fit_many},
+    tension::{self, TangentScale},
+};
+
+use crate::{
+    curve::{Member, SpaceCurve},
+    error::{curve_error, fit_error, input_error},
+    fit::{Data, Failure, Searching, finish},
+    input::{Offsets, Points},
+    options::{self, CriteriaNames, Ends, Method, Parameters},
+    work::interruptible_many,
+};
+
+/// A curve of given tension, or one that was searched for.
+enum Made<C> {
+    Built(C),
+    Searched(Box<Fit<C>>),
+}
+
+/// The question of a search whether to go on.
+type Ask<'a> = &'a (dyn Fn() -> ControlFlow<()> + Sync);
+
+/// Fits all, and returns the curves (`None` where one failed) and the exceptions by index.
+fn run<'py, C: Member>(
+    py: Python<'py>,
+    data: &Data,
+    offsets: &Offsets,
+    threads: Option<usize>,
+    failure: &Failure,
+    make: impl Fn(DataPolygon, Ask<'_>) -> Result<Made<C>, FitError> + Sync,
+) -> PyResult<(Bound<'py, PyList>, Bound<'py, PyDict>)> {
+    // A line that every option suits: an error now is the options', not that of any curve.
+    let parametrization = match &data.parametrization {
+        Parametrization::Given(_) => Parametrization::Uniform,
+        named => named.clone(),
+    };
+    let line = vec![DVec3::ZERO, DVec3::X];
+    let line = DataPolygon::new(line, &parametrization, Boundary::ZeroCurvature);
+    make(line.map_err(input_error)?, &|| ControlFlow::Continue(())).map_err(fit_error)?;
+
+    let points = Ragged::new(&data.points, &offsets.0).map_err(input_error)?;
+    let Data { dimension, boundary, .. } = *data;
+    let parametrization = data.parametrization.clone();
+    let collection = Collection { points, dimension, parametrization, boundary };
+    let fits = interruptible_many(py, |ask| {
+        fit_many(&collection, threads, |polygon| match ask() {
+            ControlFlow::Continue(()) => make(polygon, ask).map(Some),
+            ControlFlow::Break(()) => Ok(None),
+        })
+    })?
+    .map_err(input_error)?;
+
+    let (curves, errors) = (PyList::empty(py), PyDict::new(py));
+    for (k, fit) in fits.into_iter().enumerate() {
+        let done = match fit {
+            Ok(Some(Made::Built(curve))) => SpaceCurve::of(Arc::new(curve), None).into_python(py),
+            Ok(Some(Made::Searched(fit))) => finish(py, *fit, failure, &format!("curve {k}: ")),
+            // Interrupted: the exception has been raised above.
+            Ok(None) => continue,
+            Err(error) => Err(curve_error(k, &error)),
+        };
+        match done {
+            Ok(curve) => curves.append(curve)?,
+            Err(error) => {
+                curves.append(py.None())?;
+                errors.set_item(k, error.into_value(py))?;
+            }
+        }
+    }
+    Ok((curves, errors))
+}
+
+/// Fits every curve of a collection.
+#[pyfunction]
+// One argument an option: the Python function beside gives them by name.
+#[allow(clippy::too_many_arguments)]
+pub(crate) fn _fit_many<'py>(
+    py: Python<'py>,
+    points: Points,
+    offsets: Offsets,
+    #[pyo3(from_py_with = options::method)] method: Method,
+    parameters: Parameters,
+    boundary: Ends,
+    shape_preserving: bool,
+    #[pyo3(from_py_with = options::threads)] threads: Option<usize>,
+    criteria: CriteriaNames,
+    #[pyo3(from_py_with = options::coplanarity)] coplanarity: f64,
+    #[pyo3(from_py_with = options::collinearity)] collinearity: f64,
+    #[pyo3(from_py_with = options::tolerance)] tolerance: f64,
+    #[pyo3(from_py_with = options::strategy)] strategy: Strategy,
+    #[pyo3(from_py_with = options::optional_step)] step: Option<f64>,
+    #[pyo3(from_py_with = options::max_iterations)] max_iterations: Option<usize>,
+    #[pyo3(from_py_with = options::safety)] safety: f64,
+    #[pyo3(from_py_with = options::continuity)] continuity: Continuity,
+    #[pyo3(from_py_with = options::tension)] tension: f64,
+    #[pyo3(from_py_with = options::tangent_scale)] tangent_scale: f64,
+) -> PyResult<(Bound<'py, PyList>, Bound<'py, PyDict>)> {
+    let data = Data::new(points, parameters, boundary)?;
+    let step = step.unwrap_or_else(|| method.default_step(strategy));
+    let search = Searching { criteria, strategy, step, max_iterations }.options(
+        coplanarity,
+        collinearity,
+        tolerance,
+    )?;
+    let (criteria, tolerances) = (search.criteria, search.tolerances);
+    let failure = Failure { criteria, tolerances };
+    match method {
+        Method::Nu => run(py, &data, &offsets, threads, &failure, |polygon, ask| {
+            if !shape_preserving {
+                return nu::NuSpline::new(polygon, Tension::Uniform(tension)).map(Made::Built);
+            }
+            nu::NuSpline::shape_preserving_with(polygon, &search, &mut |_| ask())
+                .map(|fit| Made::Searched(Box::new(fit)))
+        }),
+        Method::Tension => run(py, &data, &offsets, threads, &failure, |polygon, ask| {
+            if !shape_preserving {
+                let scale = TangentScale::Uniform(tangent_scale);
+                return tension::TensionSpline::new(polygon, scale).map(Made::Built);
+            }
+            tension::TensionSpline::shape_preserving_with(polygon, &search, &mut |_| ask())
+                .map(|fit| Made::Searched(Box::new(fit)))
+        }),
+        Method::CatmullRom => run(py, &data, &offsets, threads, &failure, |polygon, _| {
+            if !shape_preserving {
+                let tension = Tension::Uniform(tension);
+                return catmull_rom::CatmullRom::new(polygon, tension, continuity).map(Made::Built);
+            }
+            let options = HandleOptions { criteria, tolerances, safety, continuity };
+            catmull_rom::CatmullRom::shape_preserving(polygon, &options)
+                .map(|fit| Made::Searched(Box::new(fit)))
+        }),
+    }
+}

@@ -1,0 +1,237 @@
+"""Many curves at once: ``fit_many`` and the collection that it returns."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any, Literal, overload
+
+from shapespline._core import _fit_many
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+    from numpy.typing import ArrayLike
+
+    from shapespline._core import (
+        SpaceCurve,
+        Tangents,
+        _Boundary,
+        _Continuity,
+        _Criterion,
+        _Parametrization,
+        _Strategy,
+    )
+
+# What each option is where nobody says, and which methods have it. ``step`` has a default for
+# each strategy, which the compiled part knows.
+_SEARCH = {"criteria": None, "coplanarity": 0.2, "collinearity": 0.2, "tolerance": 1e-9}
+_TENSION_SEARCH = {**_SEARCH, "strategy": "fairest", "step": None, "max_iterations": None}
+_PRESERVING: dict[str, dict[str, Any]] = {
+    "nu": _TENSION_SEARCH,
+    "tension": _TENSION_SEARCH,
+    "catmull-rom": {**_SEARCH, "safety": 0.9, "continuity": "C1"},
+}
+_GIVEN: dict[str, dict[str, Any]] = {
+    "nu": {"tension": 0.0},
+    "tension": {"tangent_scale": 1.0},
+    "catmull-rom": {"tension": 0.0, "continuity": "C1"},
+}
+_PARAMETERS = {"catmull-rom": "centripetal"}
+_ALL = {
+    **_TENSION_SEARCH,
+    **_PRESERVING["catmull-rom"],
+    **_GIVEN["nu"],
+    **_GIVEN["tension"],
+}
+
+
+class Fits(Sequence["SpaceCurve | None"]):
+    """The curves of a collection, in order, and what went wrong: made by `fit_many`.
+
+    A sequence: ``fits[k]`` is the curve through the points ``offsets[k]`` to ``offsets[k + 1]``, or
+    ``None`` where there is none. Immutable and picklable.
+
+    Attributes
+    ----------
+    errors : Mapping[int, Exception]
+        The exception of each curve that failed, by its index: a ``ValueError`` for unusable points,
+        a `ConvergenceError`, which carries the last curve and its report, where the limit of
+        iterations was reached.
+    ok : bool
+        Whether no curve failed.
+
+    Examples
+    --------
+    >>> import shapespline as ss
+    >>> points = [[0, 0], [1, 1], [2, 0], [5, 5], [5, 5], [0, 1], [1, 0], [2, 2]]
+    >>> fits = ss.fit_many(points, [0, 3, 5, 8])
+    >>> fits
+    <Fits: 3 curves, 1 of them failed>
+    >>> fits[2].check().ok, fits[1]
+    (True, None)
+    >>> print(fits.errors[1])
+    curve 1: points[1] repeats points[0]: [5, 5, 0]; neighbouring points must differ
+    """
+
+    __slots__ = ("_curves", "_errors")
+
+    def __init__(
+        self, curves: Iterable[SpaceCurve | None], errors: Mapping[int, Exception]
+    ) -> None:
+        self._curves = tuple(curves)
+        self._errors = MappingProxyType(dict(errors))
+
+    @property
+    def errors(self) -> Mapping[int, Exception]:
+        """The exception of each curve that failed, by its index; a read-only mapping."""
+        return self._errors
+
+    @property
+    def ok(self) -> bool:
+        """Whether no curve failed."""
+        return not self._errors
+
+    @overload
+    def __getitem__(self, index: int) -> SpaceCurve | None: ...
+    @overload
+    def __getitem__(self, index: slice) -> Sequence[SpaceCurve | None]: ...
+    def __getitem__(
+        self, index: int | slice
+    ) -> SpaceCurve | None | Sequence[SpaceCurve | None]:
+        """Return the curve of an index, or a tuple of those of a slice."""
+        return self._curves[index]
+
+    def __len__(self) -> int:
+        """Return the number of curves, failed ones included."""
+        return len(self._curves)
+
+    def __repr__(self) -> str:
+        """Return the number of curves and of those that failed."""
+        failed = f", {len(self._errors)} of them failed" if self._errors else ""
+        return f"<Fits: {len(self._curves)} curves{failed}>"
+
+    def __reduce__(self) -> tuple[type[Fits], tuple[object, ...]]:
+        """Pickle as the curves and the exceptions."""
+        return Fits, (self._curves, dict(self._errors))
+
+
+def fit_many(
+    points: ArrayLike,
+    offsets: ArrayLike,
+    method: Literal["nu", "tension", "catmull-rom"] = "nu",
+    parameters: _Parametrization | float | ArrayLike | None = None,
+    *,
+    shape_preserving: bool = True,
+    boundary: _Boundary | Tangents = "zero-curvature",
+    errors: Literal["return", "raise"] = "return",
+    threads: int | None = None,
+    criteria: _Criterion | Iterable[_Criterion] | None = None,
+    strategy: _Strategy | None = None,
+    step: float | None = None,
+    coplanarity: float | None = None,
+    collinearity: float | None = None,
+    tolerance: float | None = None,
+    max_iterations: int | None = None,
+    safety: float | None = None,
+    continuity: _Continuity | None = None,
+    tension: float | None = None,
+    tangent_scale: float | None = None,
+) -> Fits:
+    """Fit the curves of a collection, such as streamlines or tool paths, in parallel.
+
+    Parameters
+    ----------
+    points : array_like, shape (n, 3) or (n, 2)
+        The points of all curves, one curve after the other.
+    offsets : array_like of int, shape (curves + 1,)
+        Curve k goes through ``points[offsets[k]:offsets[k + 1]]``: from 0, never falling, to n.
+    method : {"nu", "tension", "catmull-rom"}
+        `NuSpline`, `TensionSpline` or `CatmullRom`.
+    parameters : {"chordal", "centripetal", "uniform"}, float or array_like, shape (n,), optional
+        As for the curves; an array holds those of all curves. Default: that of the class.
+    shape_preserving : bool
+        Whether to keep the shape of each curve's points; else tension is given.
+    boundary : {"zero-curvature", "natural", "periodic", "circular"} or Tangents
+        The ends of every curve.
+    errors : {"return", "raise"}
+        What becomes of curves that fail: they are ``None``, and their exceptions are in the
+        attribute ``errors`` of what is returned; or the first exception is raised. All other
+        curves are fitted in either case.
+    threads : int, optional
+        Number of threads, at least 1; default one for each processor. Results do not depend on it.
+    criteria, coplanarity, collinearity, tolerance
+        As for ``shape_preserving`` of the class.
+    strategy, step, max_iterations
+        As for ``NuSpline.shape_preserving`` and ``TensionSpline.shape_preserving``.
+    safety : float, optional
+        As for ``CatmullRom.shape_preserving``.
+    continuity : {"C1", "G1"}, optional
+        As for `CatmullRom`.
+    tension : float, optional
+        With ``shape_preserving=False``: that of every point of a `NuSpline` or `CatmullRom`.
+    tangent_scale : float, optional
+        With ``shape_preserving=False``: that of every point of a `TensionSpline`.
+
+    Returns
+    -------
+    Fits
+        A sequence of the curves, ``None`` where one failed, with the attribute ``errors``.
+
+    Raises
+    ------
+    ValueError
+        If ``offsets`` do not fit the points, or an option is outside its range.
+    TypeError
+        If an argument is of a wrong kind, or an option is not one of the method.
+    KeyboardInterrupt
+        If Ctrl-C is pressed meanwhile.
+
+    Notes
+    -----
+    Other Python threads run meanwhile. Each curve is fitted as by its class: algorithm, guarantee
+    and sources are there. Cost O(n), and what the violations need.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import shapespline as ss
+    >>> rng = np.random.default_rng(0)
+    >>> lengths = rng.integers(20, 90, size=100)
+    >>> points = rng.normal(size=(lengths.sum(), 3)).cumsum(axis=0)
+    >>> fits = ss.fit_many(points, np.r_[0, lengths.cumsum()], "tension")
+    >>> fits.ok, len(fits), all(curve.check().ok for curve in fits)
+    (True, 100, True)
+    """
+    if errors not in ("return", "raise"):
+        raise ValueError(f"errors must be one of 'return', 'raise'; got {errors!r}")
+    known = (_PRESERVING if shape_preserving else _GIVEN).get(str(method), _ALL)
+    given = {
+        "criteria": criteria,
+        "strategy": strategy,
+        "step": step,
+        "coplanarity": coplanarity,
+        "collinearity": collinearity,
+        "tolerance": tolerance,
+        "max_iterations": max_iterations,
+        "safety": safety,
+        "continuity": continuity,
+        "tension": tension,
+        "tangent_scale": tangent_scale,
+    }
+    given = {name: value for name, value in given.items() if value is not None}
+    for name in given:
+        if name not in known:
+            raise TypeError(
+                f"{name} is no option of method {method!r} with shape_preserving="
+                f"{bool(shape_preserving)}; its options are {', '.join(known)}"
+            )
+    options = {**_ALL, **given}
+    if parameters is None:
+        parameters = _PARAMETERS.get(str(method), "chordal")
+    curves, failed = _fit_many(
+        points, offsets, method, parameters, boundary, bool(shape_preserving), threads, **options
+    )
+    if failed and errors == "raise":
+        raise failed[min(failed)]
+    return Fits(curves, failed)
