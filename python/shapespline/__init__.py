@@ -13,6 +13,7 @@ from shapespline import plot
 from shapespline._core import (
     Diagnostics,
     NuSpline,
+    PiecewiseBezier,
     SearchStep,
     ShapeRecord,
     ShapeReport,
@@ -21,16 +22,28 @@ from shapespline._core import (
     __version__,
 )
 from shapespline._errors import ConvergenceError
+from shapespline._polygon import PolygonShape, polygon_shape
+from shapespline._records import NodeRecord, OscillationRecord, UndecidedRecord
+from shapespline._shape import InflectionCount, check_shape, inflection_count
 
 __all__ = [
     "ConvergenceError",
     "Diagnostics",
+    "InflectionCount",
+    "NodeRecord",
     "NuSpline",
+    "OscillationRecord",
+    "PiecewiseBezier",
+    "PolygonShape",
     "SearchStep",
     "ShapeRecord",
     "ShapeReport",
     "SpaceCurve",
     "Tangents",
+    "UndecidedRecord",
     "__version__",
+    "check_shape",
+    "inflection_count",
     "plot",
+    "polygon_shape",
 ]

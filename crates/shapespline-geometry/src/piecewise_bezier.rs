@@ -136,7 +136,12 @@ impl PiecewiseBezier {
         Self::homogeneous(breaks, pieces, degree, dimension, true)
     }
 
-    fn homogeneous(
+    /// From control points in homogeneous coordinates `(w x, w y, w z, w)`, as [`Self::piece`] gives
+    /// them; the weights of a curve that is not rational are not looked at.
+    ///
+    /// # Errors
+    /// As [`PiecewiseBezier::new`]; a rational curve with weights that are not positive.
+    pub fn homogeneous(
         breaks: Vec<f64>,
         control: Vec<DVec4>,
         degree: usize,
@@ -144,6 +149,10 @@ impl PiecewiseBezier {
         rational: bool,
     ) -> Result<Self, InputError> {
         check_shape(&breaks, control.len(), degree, "control")?;
+        if let Some(index) = control.iter().position(|p| rational && p.w <= 0.0) {
+            let (argument, value) = ("weights", control[index].w);
+            return Err(InputError::OutOfRange { argument, index, value, allowed: "positive" });
+        }
         if let Some(index) = control.iter().position(|p| !p.is_finite()) {
             let entries = control[index].to_array();
             let value = entries.into_iter().find(|x| !x.is_finite()).unwrap_or(f64::NAN);

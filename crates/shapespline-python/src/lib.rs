@@ -17,22 +17,32 @@ mod nu;
 mod options;
 mod output;
 mod pickle;
+mod piecewise;
 mod report;
+mod shape;
 mod tangents;
 mod work;
 
-/// Compiled part of shapespline: the curves and their reports.
+/// Compiled part of shapespline: the curves, their reports, and checks of any curve.
 #[pymodule(gil_used = false)]
 fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<curve::SpaceCurve>()?;
     module.add_class::<nu::NuSpline>()?;
     module.add_class::<tangents::Tangents>()?;
+    module.add_class::<piecewise::PiecewiseBezier>()?;
     module.add_class::<report::ShapeReport>()?;
     module.add_class::<report::ShapeRecord>()?;
     module.add_class::<diagnostics::Diagnostics>()?;
     module.add_class::<diagnostics::SearchStep>()?;
     module.add_function(wrap_pyfunction!(pickle::_curve_from_bytes, module)?)?;
     module.add_function(wrap_pyfunction!(pickle::_report_from_bytes, module)?)?;
+    module.add_function(wrap_pyfunction!(pickle::_piecewise_from_bytes, module)?)?;
+    module.add_function(wrap_pyfunction!(shape::_check_shape, module)?)?;
+    module.add_function(wrap_pyfunction!(shape::_curve_inflections, module)?)?;
+    module.add_function(wrap_pyfunction!(shape::_polygon_inflections, module)?)?;
+    module.add_function(wrap_pyfunction!(shape::_polygon_shape, module)?)?;
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
-    curve::document_call(module.py())
+    let py = module.py();
+    curve::document_call(&py.get_type::<curve::SpaceCurve>())?;
+    curve::document_call(&py.get_type::<piecewise::PiecewiseBezier>())
 }

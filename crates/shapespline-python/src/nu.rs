@@ -15,7 +15,7 @@ use crate::{
     error::{convergence_error, fit_error},
     input::{Numbers, Points, numbers},
     options::{self, CriteriaNames, Ends, Parameters, tolerances},
-    report::ShapeReport,
+    report::{ShapeReport, Subject},
     work::interruptible,
 };
 
@@ -134,8 +134,8 @@ impl NuSpline {
     /// boundary : {"zero-curvature", "natural", "periodic", "circular"} or Tangents
     ///     End conditions, as for `NuSpline`.
     /// criteria : str or iterable of str, optional
-    ///     What to keep: any of ``"convexity"``, ``"inflection"``, ``"torsion"``, ``"coplanarity"``
-    ///     and ``"collinearity"``; default all of them.
+    ///     What to keep: any of ``"convexity"``, ``"inflection"``, ``"torsion"``, ``"coplanarity"``,
+    ///     ``"collinearity"`` and ``"global-convexity"``; default all but the last.
     /// strategy : {"fairest", "growth", "nussp"}
     ///     ``"nussp"`` adds ``step`` (the published algorithm); ``"growth"`` doubles the tension;
     ///     ``"fairest"`` doubles and then lowers every run of tension until none can be lowered by
@@ -251,8 +251,8 @@ fn finish(py: Python<'_>, fit: Fit<nu::NuSpline>, options: &SearchOptions) -> Py
         report.segments,
         violations.join(", "),
     );
-    let curve = Arc::clone(&base.curve);
-    let report = ShapeReport::of(report, curve, options.criteria, options.tolerances);
+    let subject = Subject::Own(Arc::clone(&base.curve));
+    let report = ShapeReport::of(report, subject, options.criteria, options.tolerances);
     let report = Py::new(py, report)?.into_any();
     Err(convergence_error(py, message, base.into_python(py)?, report))
 }

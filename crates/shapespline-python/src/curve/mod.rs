@@ -6,7 +6,12 @@
 
 use std::{fmt::Debug, sync::Arc};
 
-use pyo3::{PyClass, PyClassInitializer, exceptions::PyTypeError, prelude::*, types::PyBytes};
+use pyo3::{
+    PyClass, PyClassInitializer,
+    exceptions::PyTypeError,
+    prelude::*,
+    types::{PyBytes, PyType},
+};
 use shapespline::{
     geometry::{Boundary, DVec3, DataPolygon, InputError, PiecewiseCubic, Side},
     nu::NuSpline,
@@ -18,6 +23,8 @@ mod attributes;
 mod evaluate;
 mod export;
 mod measure;
+
+pub(crate) use attributes::boundary_object;
 
 /// The families, by the numbers that pickles hold: append only.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
@@ -192,8 +199,7 @@ fn short(x: f64) -> String {
 ///
 /// pyo3 puts `__call__` into a slot, and Python shows every slot as `(*args, **kwargs)` without a
 /// word: the most used method would be the only one without help.
-pub(crate) fn document_call(py: Python<'_>) -> PyResult<()> {
-    let class = py.get_type::<SpaceCurve>();
+pub(crate) fn document_call(class: &Bound<'_, PyType>) -> PyResult<()> {
     class.setattr("__call__", class.getattr("_call")?)?;
     class.delattr("_call")
 }
