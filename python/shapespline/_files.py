@@ -113,8 +113,8 @@ def read_points(path: Path) -> Points:
     """Read points, one a line, with or without a header.
 
     Cells are separated by tabs, semicolons, commas or blanks; empty lines and lines that begin with
-    ``#`` or ``%`` are left out. With a header, the columns x, y and perhaps z are the points, u (or t)
-    their parameters, and others are ignored; without, there are two or three columns.
+    ``#`` or ``%`` are left out. With a header, the columns x, y and perhaps z are the points, u (or
+    t) their parameters, and others are ignored; without, there are two or three columns.
     """
     rows: list[list[float]] = []
     lines: list[int] = []
