@@ -43,7 +43,8 @@ def _of_bspline(curve: Any) -> PiecewiseBezier:
     degree = int(curve.k)
     count = len(knots) - degree - 1
     # SciPy looks at no more than these.
-    control = _coefficients("curve.c", curve.c, leading=1)[: max(count, 0)]
+    control = _coefficients("curve.c", curve.c, leading=1)
+    control = control[:count] if count > degree else control
     if control.shape[1] == 1:
         # The graph of a function: x is a B-spline with Greville's abscissae.
         if degree < 1:

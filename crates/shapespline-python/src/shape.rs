@@ -6,10 +6,10 @@ use numpy::PyArray1;
 use pyo3::{IntoPyObjectExt, exceptions::PyValueError, prelude::*, types::PyDict};
 use shapespline::{
     criteria::{
-        INTERPOLATION, InflectionCount, Tolerances, curve_inflections, curve_inflections_from,
-        polygon_inflections, polygon_inflections_from, polygon_shape,
+        CurveError, INTERPOLATION, InflectionCount, Tolerances, curve_inflections,
+        curve_inflections_from, polygon_inflections, polygon_inflections_from, polygon_shape,
     },
-    geometry::{self, Boundary, DVec3, DVec4, DataPolygon, Parametrization, normalize},
+    geometry::{self, Boundary, DVec3, DVec4, DataPolygon, Dimension, Parametrization, normalize},
 };
 
 use crate::{
@@ -42,6 +42,10 @@ pub(crate) fn _check_shape(
     let tolerances = tolerances(coplanarity, collinearity, tolerance)?;
     let curve = Arc::clone(&curve.get().curve);
     let Points { points, dimension } = points;
+    if dimension != curve.dimension() {
+        let [points, curve] = [dimension, curve.dimension()].map(Dimension::len);
+        return Err(PyValueError::new_err(CurveError::Dimension { points, curve }.to_string()));
+    }
     let parametrization = match parameters {
         Some(given) => given.0,
         None if curve.breaks().len() == points.len() => {
@@ -182,7 +186,7 @@ pub(crate) fn _polygon_shape<'py>(
     parts.set_item("parameters", PyArray1::from_slice(py, polygon.parameters()))?;
     parts.set_item("extent", shape.extent.name())?;
     parts.set_item("chords", vectors(py, &shape.chords, dimension)?)?;
-    parts.set_item("binormals", vectors(py, &shape.binormals, geometry::Dimension::Three)?)?;
+    parts.set_item("binormals", vectors(py, &shape.binormals, Dimension::Three)?)?;
     parts.set_item("turning_angles", PyArray1::from_vec(py, shape.turning_angles))?;
     parts.set_item("torsion", PyArray1::from_vec(py, shape.torsion))?;
     parts.set_item("calls", calls.into_bound_py_any(py)?)?;
