@@ -1,4 +1,4 @@
-"""Print the table of python/docs/shape-of-others.md: do other libraries' curves keep the shape of data?
+"""Print the table of python/docs/shape-of-others.md: how SciPy's curves keep the shape of data.
 
 Run from the root of the repository, with SciPy installed; a test holds the page against it:
 

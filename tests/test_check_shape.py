@@ -3,6 +3,7 @@
 import json
 import pickle
 import sys
+from itertools import pairwise
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -157,7 +158,9 @@ def test_a_piece_more_or_less_changes_nothing():
     padded = np.concatenate([control[:1], control, control[-1:]])
     raised = BPoly(t * padded[:-1] + (1 - t) * padded[1:], u)
     middle = np.sort(np.r_[u, 0.3 * u[:-1] + 0.7 * u[1:]])
-    taylor = [cubic(middle[:-1], k) / factorial for k, factorial in ((3, 6), (2, 2), (1, 1), (0, 1))]
+    taylor = [
+        cubic(middle[:-1], k) / factorial for k, factorial in ((3, 6), (2, 2), (1, 1), (0, 1))
+    ]
     cut = PPoly(np.array(taylor), middle)
     for other in (raised, cut):
         report = ss.check_shape(points, other, parameters=u)
@@ -201,7 +204,10 @@ def test_the_graph_of_a_function():
     # The cubic overshoots after the step; a convexity-blind PCHIP bends less wrongly.
     assert pchip.counts()["convexity"][1] == cubic.counts()["convexity"][1] > 0
     as_curve = PPoly(
-        np.stack([np.array([[0.0] * 8, [0.0] * 8, [1.0] * 8, x[:-1]]), PchipInterpolator(x, y).c], 2), x
+        np.stack(
+            [np.array([[0.0] * 8, [0.0] * 8, [1.0] * 8, x[:-1]]), PchipInterpolator(x, y).c], 2
+        ),
+        x,
     )
     assert ss.check_shape(points, as_curve).to_dict() == pchip.to_dict()
     spline = make_interp_spline(x, y, k=3)
@@ -278,7 +284,7 @@ def test_weights_are_not_ignored():
 def test_a_nurbs_curve_by_its_knots():
     knots = [0, 0, 0, 1, 1, 2, 2, 3, 3, 4, 4, 4]
     points, circle = quarter_circles()
-    control = np.vstack([[p, p + q] for p, q in zip(points[:-1], points[1:], strict=True)])
+    control = np.vstack([[p, p + q] for p, q in pairwise(points)])
     control = np.vstack([control, points[-1:]])
     weights = np.r_[np.tile([1, 0.5**0.5], 4), 1]
     nurbs = ss.PiecewiseBezier.from_bspline(knots, control, 2, weights=weights)
@@ -326,7 +332,7 @@ def test_ends_can_be_chosen():
 def test_an_undecided_question_is_reported_with_its_interval():
     """A quintic piece that is straight to rounding where the points turn: its ω is zero."""
     points = np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 1]])
-    control = [[*np.linspace(p, q, 6)] for p, q in zip(points[:-1], points[1:], strict=True)]
+    control = [[*np.linspace(p, q, 6)] for p, q in pairwise(points)]
     report = ss.check_shape(points, control, parameters=[0, 1, 2, 3], criteria="torsion")
     assert not report.ok
     found = report.undecided + report.violations
@@ -391,7 +397,9 @@ def test_the_report_in_all_forms(tmp_path):
 
     mpl.use("Agg")
     points = polygons.load_points("protein_1a8o_ca")
-    report = ss.check_shape(points, MAKERS["quintic"](chordal(points), points), parameters="chordal")
+    report = ss.check_shape(
+        points, MAKERS["quintic"](chordal(points), points), parameters="chordal"
+    )
     json.dumps(report.to_dict(), allow_nan=False)
     frame = report.to_dataframe()
     assert len(frame) == len(report.segments) == 69 * 5
@@ -440,7 +448,7 @@ def test_verdicts_do_not_depend_on_the_coordinates(maker, rng):
     spin = polygons.rotation(rng)
     moved = {
         "rotation": records(points @ spin.T) if maker != "makima" else expected,
-        "translation": records(points + [1e3, -2e3, 5e2]),
+        "translation": records(points + np.array([1e3, -2e3, 5e2])),
         "reversal": records(points[::-1], reverse=True),
         "large": records(points * 2.0**100),
         "small": records(points * 2.0**-100),
@@ -498,18 +506,28 @@ def test_a_curve_that_misses_a_point_is_not_judged():
         (POINTS, CUBIC, {"coplanarity": 0.0}, r"coplanarity must be a sine in \(0, 1\]"),
         (POINTS, CUBIC, {"boundary": "periodic"}, r"needs points\[4\] = points\[0\]"),
         (POINTS, CUBIC, {"boundary": "free"}, "boundary must be one of"),
-        (POINTS, np.zeros((3, 4, 3)), {"parameters": U}, "one piece between two points: 4 for 5 points, got 3"),
+        (
+            POINTS,
+            np.zeros((3, 4, 3)),
+            {"parameters": U},
+            "one piece between two points: 4 for 5 points, got 3",
+        ),
         (POINTS, np.zeros((4, 4)), {"parameters": U}, r"shape \(segments, degree \+ 1, dim\)"),
         (POINTS, np.zeros((4, 1, 3)), {"parameters": U}, "degree must be between 1 and 18"),
         (POINTS, np.zeros((4, 4, 3)), {"parameters": U}, r"does not pass through points\[1\]"),
-        (POINTS, np.full((4, 4, 3), np.inf), {"parameters": U}, r"control\[0, 0, 0\] must be finite"),
+        (
+            POINTS,
+            np.full((4, 4, 3), np.inf),
+            {"parameters": U},
+            r"control\[0, 0, 0\] must be finite",
+        ),
         (POINTS, PPoly(np.ones((4, 4, 5)), U), {}, "curve.c must belong to a curve"),
         (POINTS, PPoly(np.ones((1, 4, 3)), U), {}, "degree must be between 1 and 18"),
         (POINTS, SimpleNamespace(x=U[::-1], c=CUBIC.c), {}, "breaks must be strictly increasing"),
         (POINTS, SimpleNamespace(x=U[:3], c=CUBIC.c), {}, "breaks must have length 5"),
         (POINTS, SimpleNamespace(t=U, c=POINTS, k=3), {}, "knots must have length"),
     ],
-)  # fmt: skip
+)
 def test_what_does_not_belong_together(points, curve, options, message):
     with pytest.raises(ValueError, match=message):
         ss.check_shape(points, curve, **options)
@@ -552,7 +570,7 @@ def test_a_curve_that_jumps():
         ((np.zeros((1, 20, 2)), [0, 1]), {}, "degree must be between 1 and 18, got 19"),
         ((np.zeros((0, 2, 2)), [0]), {}, "breaks must hold at least 2"),
     ],
-)  # fmt: skip
+)
 def test_pieces_that_make_no_curve(arguments, options, message):
     with pytest.raises(ValueError, match=message):
         ss.PiecewiseBezier(*arguments, **options)

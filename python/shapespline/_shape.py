@@ -236,9 +236,10 @@ def inflection_count(curve: Any, direction: ArrayLike | None = None) -> Inflecti
     polygon is exact: sign vectors change only across the great circles normal to Lᵢ×Lᵢ₊₁, cost
     O(n² log n); of one spatial cubic it is 2 (Theorem 7.2). For other curves in space a direction
     that shows the count is found among many, and ``exact`` says that more is not excluded. Along a
-    given direction curves are counted exactly, by certified isolation of roots, cost O(n). The
-    count of a regular Bézier curve never exceeds that of its control polygon. A closed curve is
-    gone through once, from its first to its last point.
+    given direction curves are counted exactly, by certified isolation of roots, cost O(n). In the
+    plane the count of a Bézier curve whose control polygon is regular (its chords lie in one
+    half-plane) never exceeds the polygon's (Corollary 4.5); in space it may. A closed curve is gone
+    through once, from its first to its last point.
 
     Examples
     --------
