@@ -2,9 +2,13 @@
 //! relative.
 
 use glam::DVec3;
+use rayon::prelude::*;
 use shapespline_geometry::{Boundary, DataPolygon, length};
 
 use crate::{Criteria, Criterion, Tolerances};
+
+/// From two blocks of this many segments on all threads find the calls.
+const BLOCK: usize = 4096;
 
 /// The conditions that a segment is asked to meet.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -79,8 +83,13 @@ impl Calls {
     /// What each segment of a polygon calls for. Cost O(N).
     #[must_use]
     pub fn of_polygon(polygon: &DataPolygon, tolerances: &Tolerances) -> Vec<Self> {
-        let mut calls: Vec<Self> =
-            (0..polygon.segments()).map(|i| of_segment(polygon, i, tolerances)).collect();
+        let of = |i| of_segment(polygon, i, tolerances);
+        let n = polygon.segments();
+        let mut calls: Vec<Self> = if n < 2 * BLOCK {
+            (0..n).map(of).collect()
+        } else {
+            (0..n).into_par_iter().with_min_len(BLOCK).map(of).collect()
+        };
         // Paper 001, step 0.0: in a planar polygon coplanarity is no question.
         if !calls.iter().any(|c| c.any(Self::of(Criterion::Torsion))) {
             let rest = !Self::of(Criterion::Coplanarity).0;

@@ -5,8 +5,9 @@
 //! Bernstein coefficients. With `A, B > 0` from `ω·n > 0`, the second asks `A + C > 0` (its value at
 //! the end), the first `B + C > 0` (likewise), and with these all coefficients of both are positive.
 //! So the polynomials of the specification (E6) come down to two signs at the ends:
-//! `A + C = (a×L)·n > 0` and `B + C = (L×c)·n > 0`. Theorem 13.4 asks something else: it accepts
-//! polygons of either orientation, and ones that turn by more than π whatever the curve does.
+//! `A + C = (a×L)·n > 0` and `B + C = (L×c)·n > 0`. Theorem 13.4 asks something else: in its
+//! cases 1(a) and 2(b) it accepts polygons of either orientation (E6). Its case 1(b) is sufficient,
+//! though the polygon turns by more than π: `C > −min(A, B)` implies `C > −2√(AB)`.
 
 use shapespline_geometry::bernstein::quadratic_is_positive;
 

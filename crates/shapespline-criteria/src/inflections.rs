@@ -15,7 +15,7 @@ use shapespline_geometry::{Dimension, InputError, PiecewiseBezier, normalize};
 
 use crate::{
     general::{Segment, corners},
-    sign_changes::{most, strict},
+    sign_changes::{Direction, most, strict},
 };
 
 /// Number of inflections, and a direction that shows them.
@@ -59,12 +59,12 @@ pub fn polygon_inflections_from(
 ) -> Result<InflectionCount, InputError> {
     let direction = unit(direction)?;
     let turns = turns(points)?;
-    let count = strict(turns.iter().map(|v| v.dot(direction)), 8.0 * f64::EPSILON);
+    let count = strict(turns.iter().map(|t| t.v.dot(direction)), 8.0 * f64::EPSILON);
     Ok(InflectionCount { count, direction, exact: true })
 }
 
 /// The unit vectors along `V_i`, where the polygon turns.
-fn turns(points: &[DVec3]) -> Result<Vec<DVec3>, InputError> {
+fn turns(points: &[DVec3]) -> Result<Vec<Direction>, InputError> {
     if let Some(index) = points.iter().position(|p| !p.is_finite()) {
         let coordinates = points[index].to_array();
         let value = coordinates.into_iter().find(|x| !x.is_finite()).unwrap_or(f64::NAN);
@@ -76,7 +76,12 @@ fn turns(points: &[DVec3]) -> Result<Vec<DVec3>, InputError> {
     let chords: Vec<DVec3> = points.windows(2).map(|w| normalize(w[1] - w[0])).collect();
     let turn = |w: &[DVec3]| w[0].cross(w[1]);
     let bends = chords.windows(2).map(turn).filter(|v| v.length() > STRAIGHT);
-    Ok(bends.map(DVec3::normalize).collect())
+    Ok(bends.map(|v| towards(v, 4.0 * f64::EPSILON)).collect())
+}
+
+/// The direction of a vector that carries an error of some size.
+fn towards(v: DVec3, error: f64) -> Direction {
+    Direction { v: v.normalize(), error: error / v.length() + f64::EPSILON }
 }
 
 fn unit(direction: DVec3) -> Result<DVec3, InputError> {
@@ -166,21 +171,21 @@ fn seen_from(segment: &Segment, direction: DVec3) -> InflectionCount {
 }
 
 /// Unit vectors along `K` at `steps + 1` parameters a piece, where it does not vanish.
-fn bends(segment: &Segment, steps: usize) -> Vec<DVec3> {
+fn bends(segment: &Segment, steps: usize) -> Vec<Direction> {
     let mut bends = Vec::new();
     let mut joints = corners(segment);
     for piece in &segment.pieces {
         let omega = piece.omega();
         let clear = (STRAIGHT * omega.bound()).max(1e3 * omega.error());
         let values = (0..=steps).map(|k| omega.value(k as f64 / steps as f64));
-        bends.extend(values.filter(|v| v.length() > clear).map(DVec3::normalize));
-        if let Some((_, turn, _)) = joints.next().filter(|j| j.1.length() > STRAIGHT) {
-            bends.push(turn.normalize());
+        bends.extend(values.filter(|v| v.length() > clear).map(|v| towards(v, omega.error())));
+        if let Some((_, turn, error)) = joints.next().filter(|j| j.1.length() > STRAIGHT) {
+            bends.push(towards(turn, error));
         }
     }
     bends
 }
 
-fn is_planar(bends: &[DVec3]) -> bool {
-    bends.iter().all(|v| v.cross(bends[0]).length() <= 1e-8)
+fn is_planar(bends: &[Direction]) -> bool {
+    bends.iter().all(|w| w.v.cross(bends[0].v).length() <= 1e-8)
 }

@@ -9,14 +9,24 @@
 //! | torsion | `Γ_m ≠ 0` | `τ(u) Γ_m > 0` on the segment |
 //! | coplanarity | `Γ_m = 0`, `P_m, P_{m+1} ≠ 0` in a polygon that is not planar | the binormal stays within `asin ε₁` of `±P` |
 //! | collinearity | `P_m = 0`, `L_{m−1}·L_m > 0` | the tangent stays within `asin ε₀` of the line around the node |
+//! | global convexity (when asked) | `P_m·P_{m+1} > 0` | convexity, and `((γ−γ(0))×γ')·P_n > 0`, `(γ'(0)×(γ−γ(0)))·P_n > 0` |
 //!
-//! with `ω = Q' × Q''`. All are decided exactly for cubics, from the Bézier legs, by closed forms and
-//! by Bernstein subdivision; nothing is sampled. Sources: M. I. Karavelas, P. D. Kaklis, Numerical
-//! Algorithms 23 (2000), Problem (P) and (5.34)–(5.57); R. S. Gautam, *Shape preservation behavior
-//! of spline curves*, Definitions 3.1, 6.1, 8.2, 9.2, 10.1 and section 13.
+//! with `ω = γ' × γ''`. All are decided exactly for cubics, from the Bézier legs, by closed forms and
+//! by Bernstein subdivision; nothing is sampled. Curves of any degree, rational ones included, are
+//! decided by certified subdivision; what rounding hides is reported as undecided, with its interval.
 //!
-//! [`Checker`] prepares what the polygon calls for; [`Checker::faults`] is the fast verdict on one
-//! segment; [`Checker::record`] measures its margin; [`check`] makes the [`ShapeReport`].
+//! | question | asked of |
+//! |---|---|
+//! | does a cubic of these end legs keep the shape? | [`check`], [`Checker`] |
+//! | does any piecewise Bézier curve? | [`check_curve`], [`CurveChecker`] |
+//! | what of the nodes, and of oscillation about planes (as information)? | [`Checker::notes`], [`CurveChecker::notes`] |
+//! | what do the points themselves call for? | [`polygon_shape`] |
+//! | how many inflections are seen, from somewhere or at most? | [`polygon_inflections`], [`curve_inflections`] and their `_from` |
+//!
+//! Notation as in `shapespline_geometry`. Sources: M. I. Karavelas, P. D. Kaklis, Numerical Algorithms
+//! 23 (2000), Problem (P) and (5.34)–(5.57); R. S. Gautam, *Shape preservation behavior of spline
+//! curves*, Definitions 3.1, 3.16, 5.4, 6.2, 8.2, 9.2, 10.1 and sections 12 and 13; T. N. T. Goodman,
+//! Computer Aided Geometric Design 8 (1991) 37–50, for inflection counts.
 
 mod calls;
 mod checker;

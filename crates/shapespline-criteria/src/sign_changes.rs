@@ -4,19 +4,20 @@
 //! The sign vector is constant on each open cell into which the great circles `w·V_i = 0` cut the
 //! sphere of directions, and every cell has a piece of some circle on its boundary. So it is enough to
 //! walk around each circle, flipping one sign at a time where another circle crosses it, and to look to
-//! both sides: O(m² log m), and no direction is sampled. Circles that cross where several others do
-//! are crossed together: between them there is no cell.
+//! both sides: O(m² log m), and no direction is sampled. Crossings that rounding cannot tell apart are
+//! crossed together: a cell between them might not be there.
 
 use std::f64::consts::PI;
 
 use glam::DVec3;
 use rayon::prelude::*;
 
-/// Sine below which two vectors count as parallel.
-const PARALLEL: f64 = 1e-8;
-
-/// Angle below which crossings of great circles count as one.
-const TOGETHER: f64 = 1e-9;
+/// A unit vector, and how far rounding can have turned it.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Direction {
+    pub(crate) v: DVec3,
+    pub(crate) error: f64,
+}
 
 /// Number of strict sign changes of a sequence; numbers of size `zero` and less are left out.
 pub(crate) fn strict(values: impl IntoIterator<Item = f64>, zero: f64) -> usize {
@@ -29,7 +30,7 @@ pub(crate) fn strict(values: impl IntoIterator<Item = f64>, zero: f64) -> usize 
 }
 
 /// The most sign changes of unit vectors, and a direction that sees them.
-pub(crate) fn most(vectors: &[DVec3]) -> (usize, DVec3) {
+pub(crate) fn most(vectors: &[Direction]) -> (usize, DVec3) {
     let walk = |i: usize| -> (usize, usize, DVec3) {
         let (count, w) = around(vectors, i);
         (count, i, w)
@@ -45,21 +46,25 @@ pub(crate) fn most(vectors: &[DVec3]) -> (usize, DVec3) {
 }
 
 /// The most sign changes on either side of the great circle of one vector.
-fn around(vectors: &[DVec3], i: usize) -> (usize, DVec3) {
-    let v = vectors[i];
+fn around(vectors: &[Direction], i: usize) -> (usize, DVec3) {
+    let Direction { v, error } = vectors[i];
     let e1 = v.any_orthonormal_vector();
     let e2 = v.cross(e1);
-    // Angles at which each vector changes sign on the circle, in [0, π); parallel ones never do.
-    let plane: Vec<Option<(f64, f64)>> = vectors
+    // Size of each vector's part in the circle's plane; none for parallel ones, which never change
+    // sign on it.
+    let slack = |w: &Direction| error + w.error + 8.0 * f64::EPSILON;
+    let part = |w: &Direction| (w.v.dot(e1), w.v.dot(e2));
+    let plane: Vec<Option<f64>> = vectors
         .iter()
-        .map(|w| (w.dot(e1), w.dot(e2)))
-        .map(|(x, y)| (x.hypot(y) > PARALLEL).then_some((x, y)))
+        .map(|w| (part(w).0.hypot(part(w).1), w))
+        .map(|(size, w)| (size > 8.0 * slack(w)).then_some(size))
         .collect();
-    let mut events: Vec<(f64, usize)> = plane
-        .iter()
-        .enumerate()
-        .filter_map(|(j, p)| p.map(|(x, y)| ((-x).atan2(y).rem_euclid(PI), j)))
-        .collect();
+    // Angles in [0, π) at which each vector changes sign, and what rounding leaves open of them.
+    let event = |(j, w): (usize, &Direction)| {
+        let (x, y) = part(w);
+        plane[j].map(|size| ((-x).atan2(y).rem_euclid(PI), j, slack(w) / size))
+    };
+    let mut events: Vec<(f64, usize, f64)> = vectors.iter().enumerate().filter_map(event).collect();
     events.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
     let count = events.len();
     // Begin in the widest gap, where every sign is safe.
@@ -76,8 +81,8 @@ fn around(vectors: &[DVec3], i: usize) -> (usize, DVec3) {
         let w = direction(begin);
         let mut positive: Vec<bool> = (0..vectors.len())
             .map(|j| match plane[j] {
-                Some(_) => vectors[j].dot(w) > 0.0,
-                None => side * vectors[j].dot(v) > 0.0,
+                Some(_) => vectors[j].v.dot(w) > 0.0,
+                None => side * vectors[j].v.dot(v) > 0.0,
             })
             .collect();
         let mut changes = positive.windows(2).filter(|p| p[0] != p[1]).count();
@@ -91,7 +96,7 @@ fn around(vectors: &[DVec3], i: usize) -> (usize, DVec3) {
         for step in 0..count.saturating_sub(1) {
             let k = (first + step) % count;
             flip(&mut positive, events[k].1, &mut changes);
-            if gap(k) > TOGETHER {
+            if gap(k) > 2.0 * (events[k].2 + events[(k + 1) % count].2) {
                 // Beyond π the walk is on the other half of the circle.
                 let turned = if k < first { PI } else { 0.0 };
                 keep(changes, events[k].0 + turned + 0.5 * gap(k));
@@ -112,9 +117,9 @@ fn flip(positive: &mut [bool], j: usize, changes: &mut usize) {
 }
 
 /// A direction beside the circle, so close that no other sign changes.
-fn off_circle(vectors: &[DVec3], plane: &[Option<(f64, f64)>], w: DVec3, v: DVec3) -> DVec3 {
+fn off_circle(vectors: &[Direction], plane: &[Option<f64>], w: DVec3, v: DVec3) -> DVec3 {
     let crossing = vectors.iter().zip(plane).filter(|(_, p)| p.is_some());
-    let least = crossing.fold(1.0f64, |m, (x, _)| m.min(x.dot(w).abs()));
+    let least = crossing.fold(1.0f64, |m, (x, _)| m.min(x.v.dot(w).abs()));
     (w + v * (0.5 * least)).normalize_or_zero()
 }
 
@@ -146,7 +151,9 @@ mod tests {
             a in vectors(), b in lattice(), seeds in proptest::collection::vec(proptest::array::uniform3(-1.0..1.0f64), 3000),
         ) {
             for v in [a, b] {
-                let (count, w) = most(&v);
+                let exact: Vec<Direction> =
+                    v.iter().map(|&v| Direction { v, error: f64::EPSILON }).collect();
+                let (count, w) = most(&exact);
                 prop_assert_eq!(strict(v.iter().map(|x| x.dot(w)), 1e-14), count);
                 for s in &seeds {
                     let d = DVec3::from(*s);
@@ -158,7 +165,10 @@ mod tests {
 
     #[test]
     fn parallel_vectors_change_as_their_signs_do() {
-        let v = [1.0, -1.0, -1.0, 1.0, -1.0].map(|s| DVec3::new(2.0, 1.0, -3.0).normalize() * s);
+        let v = [1.0, -1.0, -1.0, 1.0, -1.0].map(|s| Direction {
+            v: DVec3::new(2.0, 1.0, -3.0).normalize() * s,
+            error: f64::EPSILON,
+        });
         assert_eq!(most(&v).0, 3);
         assert_eq!(most(&[]).0, 0);
         assert_eq!(most(&v[..1]).0, 0);

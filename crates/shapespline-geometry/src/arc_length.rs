@@ -1,6 +1,6 @@
 //! Arc length, and parameters at given arc lengths.
 
-use crate::{CubicSegment, PiecewiseCubic, Side, vector::length};
+use crate::{CubicSegment, Curve, PiecewiseCubic, Side, vector::length};
 
 /// Nodes and weights of the ten-point Gauss–Legendre rule on `[−1, 1]`, positive half.
 const GAUSS: [(f64, f64); 5] = [
@@ -47,21 +47,22 @@ fn adaptive(s: &CubicSegment, from: f64, to: f64, whole: f64, allowed: f64, dept
 
 /// Table of the arc length of a curve up to each knot.
 #[derive(Debug, Clone)]
-pub struct ArcLength<'a> {
-    curve: &'a PiecewiseCubic,
+pub struct ArcLength<'a, C: ?Sized = PiecewiseCubic> {
+    curve: &'a C,
     /// Length from the first knot to each knot.
     upto: Vec<f64>,
 }
 
-impl<'a> ArcLength<'a> {
+impl<'a, C: Curve + ?Sized> ArcLength<'a, C> {
     /// Measures every segment, each to `1e-13` of the length of its Bézier polygon. Cost O(N).
     #[must_use]
-    pub fn new(curve: &'a PiecewiseCubic) -> Self {
+    pub fn new(curve: &'a C) -> Self {
+        let cubic = curve.cubic();
         let mut sum = 0.0;
-        let mut upto = Vec::with_capacity(curve.segments() + 1);
+        let mut upto = Vec::with_capacity(cubic.segments() + 1);
         upto.push(sum);
-        for i in 0..curve.segments() {
-            sum += curve.segment(i).arc_length(0.0, 1.0);
+        for i in 0..cubic.segments() {
+            sum += cubic.segment(i).arc_length(0.0, 1.0);
             upto.push(sum);
         }
         Self { curve, upto }
@@ -77,15 +78,16 @@ impl<'a> ArcLength<'a> {
     /// goes on there, around a closed curve as often as the parameter goes.
     #[must_use]
     pub fn upto(&self, u: f64) -> f64 {
-        let knots = self.curve.knots();
+        let cubic = self.curve.cubic();
+        let knots = cubic.knots();
         let (first, last) = (knots[0], knots[knots.len() - 1]);
-        let turns = if self.curve.domain() == crate::Domain::Closed {
+        let turns = if cubic.domain() == crate::Domain::Closed {
             ((u - first) / (last - first)).floor()
         } else {
             0.0
         };
         let (i, t) = self.curve.locate(u - turns * (last - first), Side::Right);
-        turns * self.total() + self.upto[i] + self.curve.segment(i).arc_length(0.0, t)
+        turns * self.total() + self.upto[i] + cubic.segment(i).arc_length(0.0, t)
     }
 
     /// Signed length between two parameters.
@@ -98,8 +100,9 @@ impl<'a> ArcLength<'a> {
     /// taken to the ends. Newton's iteration kept inside a shrinking bracket.
     #[must_use]
     pub fn parameter(&self, length: f64) -> f64 {
-        let knots = self.curve.knots();
-        let n = self.curve.segments();
+        let cubic = self.curve.cubic();
+        let knots = cubic.knots();
+        let n = cubic.segments();
         let i = self.upto[1..n].partition_point(|&l| l <= length);
         let wanted = length - self.upto[i];
         let whole = self.upto[i + 1] - self.upto[i];
@@ -109,7 +112,7 @@ impl<'a> ArcLength<'a> {
         if wanted >= whole {
             return knots[i + 1];
         }
-        let segment = self.curve.segment(i);
+        let segment = cubic.segment(i);
         let (mut low, mut high, mut t) = (0.0f64, 1.0f64, wanted / whole);
         for _ in 0..100 {
             let excess = segment.arc_length(0.0, t) - wanted;
@@ -128,7 +131,7 @@ impl<'a> ArcLength<'a> {
             }
             t = next;
         }
-        knots[i] + t * (knots[i + 1] - knots[i])
+        self.curve.parameter(i, t)
     }
 }
 

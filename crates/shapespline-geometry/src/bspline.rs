@@ -60,7 +60,6 @@ pub(crate) fn bezier_of_bspline(
 
 #[cfg(test)]
 mod tests {
-    use super::*;
     use crate::{DVec3, Dimension, PiecewiseBezier};
 
     /// Value by the recursion of Cox and de Boor, written out.
@@ -83,7 +82,7 @@ mod tests {
     #[test]
     fn pieces_have_the_values_of_the_spline() {
         let points: Vec<DVec3> = (0..9)
-            .map(|i| f64::from(i))
+            .map(f64::from)
             .map(|x| DVec3::new((2.3 * x).sin(), (1.7 * x).cos(), 0.3 * x))
             .collect();
         for d in 1..=5 {

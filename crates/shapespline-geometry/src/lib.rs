@@ -3,7 +3,8 @@
 //! Data flows one way through this crate: points and a [`Parametrization`] make a [`DataPolygon`]
 //! (chords, binormal vectors, the sign of the discrete torsion); a spline family turns the polygon
 //! into end legs of cubic Bézier segments; [`PiecewiseCubic`] stores and evaluates them; and
-//! [`CubicSegment`] answers every question about one segment in closed form.
+//! [`CubicSegment`] answers every question about one segment in closed form. Curves that were not made
+//! here come in as a [`PiecewiseBezier`] of any degree, rational or not.
 //!
 //! Notation (one for all papers): points `I_0 … I_N`, parameters `u_0 < … < u_N`, spacing
 //! `h_i = u_{i+1} − u_i`, chords `L_i = I_{i+1} − I_i`, binormal vectors `P_i = L_{i−1} × L_i`,
@@ -17,27 +18,35 @@ mod arc_length;
 pub mod bernstein;
 mod boundary;
 mod bspline;
+mod curve;
 mod error;
 mod frame;
 mod locate;
+mod monotone;
 mod parametrization;
 mod piecewise;
 mod piecewise_bezier;
 mod polygon;
 pub mod polynomial;
+mod ragged;
+mod reparametrized;
 mod segment;
 mod vector;
 
 pub use arc_length::ArcLength;
 pub use boundary::Boundary;
+pub use curve::Curve;
 pub use error::InputError;
 pub use frame::Frame;
 pub use glam::{DVec3, DVec4};
 pub use locate::{Locator, Side};
+pub use monotone::MonotoneCubic;
 pub use parametrization::Parametrization;
 pub use piecewise::{Domain, PiecewiseCubic};
 pub use piecewise_bezier::{BezierPart, PiecewiseBezier};
 pub use polygon::{DataPolygon, Dimension};
+pub use ragged::Ragged;
+pub use reparametrized::ReparametrizedCubic;
 pub use segment::CubicSegment;
 pub use vector::{length, normalize};
 

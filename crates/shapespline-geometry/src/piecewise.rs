@@ -6,7 +6,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use crate::{
-    CubicSegment, Dimension, InputError, Locator, Side, locate::search,
+    CubicSegment, Curve, DataPolygon, Dimension, InputError, Locator, Side, locate::search,
     parametrization::check_increasing,
 };
 
@@ -65,6 +65,9 @@ const BLOCK: usize = 16_384;
 /// Queries whose segments are found before any of them is evaluated.
 const STRIDE: usize = 64;
 
+/// `[1 − t, t]` of that many.
+pub(crate) type Locals = [[f64; 2]; STRIDE];
+
 impl PiecewiseCubic {
     /// Curve from knots, points and the end legs of each segment.
     ///
@@ -96,11 +99,19 @@ impl PiecewiseCubic {
             return Err(InputError::Length { argument, expected, found, per });
         }
         check_increasing("knots", &knots)?;
-        let finite = |[a, c]: &[DVec3; 2]| a.is_finite() && c.is_finite();
-        if let Some(index) = legs.iter().position(|pair| !finite(pair)) {
-            let value = f64::NAN;
-            return Err(InputError::NotFinite { argument: "legs", index, value });
-        }
+        check_legs(&legs)?;
+        Ok(Self { knots, points, legs, dimension, domain, locator: OnceLock::new() })
+    }
+
+    /// Curve through the points of a polygon, with the end legs of each segment.
+    ///
+    /// # Errors
+    /// Not one pair of legs a segment; legs that are not finite.
+    pub fn through(polygon: DataPolygon, legs: Vec<[DVec3; 2]>) -> Result<Self, InputError> {
+        let domain = if polygon.is_closed() { Domain::Closed } else { Domain::Open };
+        let dimension = polygon.dimension();
+        let (points, knots) = polygon.into_points_and_parameters();
+        check_legs(&legs)?;
         Ok(Self { knots, points, legs, dimension, domain, locator: OnceLock::new() })
     }
 
@@ -151,14 +162,19 @@ impl PiecewiseCubic {
     /// open curve `t` leaves `[0, 1]`; on a closed one the parameter wraps. Cost O(log N).
     #[must_use]
     pub fn locate(&self, u: f64, side: Side) -> (usize, f64) {
+        let (i, u) = self.find(u, side);
+        (i, self.local(i, u))
+    }
+
+    /// Segment of a parameter, and the parameter wrapped into it. Cost O(log N).
+    pub(crate) fn find(&self, u: f64, side: Side) -> (usize, f64) {
         let u = self.wrap(u);
-        let mut i = search(&self.knots, u, side);
         // On a closed curve the segment that ends at the first knot is the last one.
         if self.domain == Domain::Closed && side == Side::Left && u == self.knots[0] {
-            i = self.segments() - 1;
-            return (i, 1.0);
+            let last = self.segments();
+            return (last - 1, self.knots[last]);
         }
-        (i, self.local(i, u))
+        (search(&self.knots, u, side), u)
     }
 
     /// First, second and third derivatives with respect to `u`.
@@ -198,58 +214,84 @@ impl PiecewiseCubic {
         side: Side,
         out: &mut [f64],
     ) -> Result<(), InputError> {
+        let local = |segments: &[usize], u: &[f64], local: &mut Locals| {
+            for ((&i, &u), local) in segments.iter().zip(u).zip(local) {
+                let t = self.local(i, u);
+                *local = [1.0 - t, t];
+            }
+        };
+        match order {
+            0 => self.fill_with(u, side, out, local, |i, l| self.derivative_at::<0>(i, l)),
+            1 => self.fill_with(u, side, out, local, |i, l| self.derivative_at::<1>(i, l)),
+            2 => self.fill_with(u, side, out, local, |i, l| self.derivative_at::<2>(i, l)),
+            3 => self.fill_with(u, side, out, local, |i, l| self.derivative_at::<3>(i, l)),
+            _ => self.fill_with(u, side, out, local, |i, l| self.derivative_at::<4>(i, l)),
+        }
+    }
+
+    /// Finds the segment of every parameter, has `local` make `[1 − t, t]` of segments and (wrapped)
+    /// parameters, some at a time, and writes what `value` makes of segment and `[1 − t, t]`, row by
+    /// row: the one way to many values, whatever the parameter means.
+    pub(crate) fn fill_with(
+        &self,
+        u: &[f64],
+        side: Side,
+        out: &mut [f64],
+        local: impl Fn(&[usize], &[f64], &mut Locals) + Sync,
+        value: impl Fn(usize, [f64; 2]) -> DVec3 + Sync,
+    ) -> Result<(), InputError> {
         let columns = self.dimension.len();
         if out.len() != u.len() * columns {
             let (expected, found) = (u.len() * columns, out.len());
             let per = "one for each parameter and coordinate";
             return Err(InputError::Length { argument: "out", expected, found, per });
         }
-        match (order, columns) {
-            (0, 2) => self.fill::<0, 2>(u, side, out),
-            (1, 2) => self.fill::<1, 2>(u, side, out),
-            (2, 2) => self.fill::<2, 2>(u, side, out),
-            (3, 2) => self.fill::<3, 2>(u, side, out),
-            (_, 2) => self.fill::<4, 2>(u, side, out),
-            (0, _) => self.fill::<0, 3>(u, side, out),
-            (1, _) => self.fill::<1, 3>(u, side, out),
-            (2, _) => self.fill::<2, 3>(u, side, out),
-            (3, _) => self.fill::<3, 3>(u, side, out),
-            (_, _) => self.fill::<4, 3>(u, side, out),
+        match self.dimension {
+            Dimension::Two => self.fill::<2>(u, side, out, local, value),
+            Dimension::Three => self.fill::<3>(u, side, out, local, value),
         }
         Ok(())
     }
 
-    fn fill<const ORDER: usize, const COLUMNS: usize>(
+    fn fill<const COLUMNS: usize>(
         &self,
         u: &[f64],
         side: Side,
         out: &mut [f64],
+        local: impl Fn(&[usize], &[f64], &mut Locals) + Sync,
+        value: impl Fn(usize, [f64; 2]) -> DVec3 + Sync,
     ) {
         // A table costs about as much to make as it saves on one query a segment.
         let table = if u.len() >= self.segments().max(64) { self.table() } else { None };
         let block = |u: &[f64], out: &mut [f64]| {
             let ascending = u.is_sorted();
             let (mut segments, mut hint) = ([0; STRIDE], 0);
+            let (mut wrapped, mut locals) = ([0.0; STRIDE], [[0.0; 2]; STRIDE]);
             for (u, out) in u.chunks(STRIDE).zip(out.chunks_mut(STRIDE * COLUMNS)) {
                 // First all segments, then all values: what the loops load from memory depends on
                 // no branch of the iteration before, so that cache misses overlap.
-                for (&u, segment) in u.iter().zip(&mut segments) {
+                for ((&u, segment), wrapped) in u.iter().zip(&mut segments).zip(&mut wrapped) {
+                    *wrapped = self.wrap(u);
                     *segment = match table {
-                        Some(table) if !ascending => table.segment(&self.knots, self.wrap(u)),
-                        _ => self.near(hint, self.wrap(u)),
+                        Some(table) if !ascending => table.segment(&self.knots, *wrapped),
+                        _ => self.near(hint, *wrapped),
                     };
                     hint = *segment;
                 }
-                for ((&u, &i), row) in u.iter().zip(&segments).zip(out.chunks_exact_mut(COLUMNS)) {
-                    let value = self.derivative::<ORDER>(i, self.local(i, self.wrap(u)));
-                    row.copy_from_slice(&value.to_array()[..COLUMNS]);
+                local(&segments[..u.len()], &wrapped[..u.len()], &mut locals);
+                for ((&l, &i), row) in
+                    locals.iter().zip(&segments).zip(out.chunks_exact_mut(COLUMNS))
+                {
+                    row.copy_from_slice(&value(i, l).to_array()[..COLUMNS]);
                 }
             }
         };
         let left = |u: &[f64], out: &mut [f64]| {
+            let mut locals = [[0.0; 2]; STRIDE];
             for (&u, row) in u.iter().zip(out.chunks_exact_mut(COLUMNS)) {
-                let (i, t) = self.locate(u, Side::Left);
-                row.copy_from_slice(&self.derivative::<ORDER>(i, t).to_array()[..COLUMNS]);
+                let (i, u) = self.find(u, Side::Left);
+                local(&[i], &[u], &mut locals);
+                row.copy_from_slice(&value(i, locals[0]).to_array()[..COLUMNS]);
             }
         };
         let one = |u: &[f64], out: &mut [f64]| match side {
@@ -301,8 +343,13 @@ impl PiecewiseCubic {
     /// Derivative with respect to `u` of a segment at local `t`, as weights of end points and legs.
     #[inline]
     fn derivative<const ORDER: usize>(&self, i: usize, t: f64) -> DVec3 {
+        self.derivative_at::<ORDER>(i, [1.0 - t, t])
+    }
+
+    /// The same at `[1 − t, t]`, for callers who know `1 − t` better than the difference does.
+    #[inline]
+    pub(crate) fn derivative_at<const ORDER: usize>(&self, i: usize, [s, t]: [f64; 2]) -> DVec3 {
         let (p, q, [a, c]) = (self.points[i], self.points[i + 1], self.legs[i]);
-        let s = 1.0 - t;
         if ORDER == 0 {
             // Exact at both ends, and the same run through backwards.
             let (ss, tt) = (s * s, t * t);
@@ -322,6 +369,47 @@ impl PiecewiseCubic {
             _ => DVec3::splat(0.0 * t.clamp(-1.0, 1.0)),
         }
     }
+}
+
+impl Curve for PiecewiseCubic {
+    fn cubic(&self) -> &PiecewiseCubic {
+        self
+    }
+
+    fn locate(&self, u: f64, side: Side) -> (usize, f64) {
+        self.locate(u, side)
+    }
+
+    fn parameter(&self, segment: usize, t: f64) -> f64 {
+        self.knots[segment] + t * (self.knots[segment + 1] - self.knots[segment])
+    }
+
+    fn evaluate(&self, u: f64, order: usize, side: Side) -> DVec3 {
+        self.evaluate(u, order, side)
+    }
+
+    fn evaluate_many(
+        &self,
+        u: &[f64],
+        order: usize,
+        side: Side,
+        out: &mut [f64],
+    ) -> Result<(), InputError> {
+        self.evaluate_many(u, order, side, out)
+    }
+}
+
+fn check_legs(legs: &[[DVec3; 2]]) -> Result<(), InputError> {
+    // Zero times a number is zero, times an infinity or NaN it is NaN: one sum for all, no branch.
+    let zero = legs.iter().fold(DVec3::ZERO, |sum, [a, c]| sum + *a * 0.0 + *c * 0.0);
+    if zero == DVec3::ZERO {
+        return Ok(());
+    }
+    let finite = |[a, c]: &[DVec3; 2]| a.is_finite() && c.is_finite();
+    let index = legs.iter().position(|pair| !finite(pair)).unwrap_or(0);
+    let of_legs = legs[index].into_iter().flat_map(|leg| leg.to_array());
+    let value = of_legs.into_iter().find(|x| !x.is_finite()).unwrap_or(f64::NAN);
+    Err(InputError::NotFinite { argument: "legs", index, value })
 }
 
 #[cfg(test)]

@@ -17,7 +17,7 @@
 //!
 //! ```
 //! use shapespline_geometry::{Boundary, DVec3, DataPolygon, Parametrization};
-//! use shapespline_nu::{NuSpline, SearchOptions};
+//! use shapespline_nu::{Interpolant, NuSpline, SearchOptions};
 //!
 //! let points = vec![
 //!     DVec3::new(0.0, 0.0, 0.0),
@@ -34,14 +34,13 @@
 //! # Ok::<(), shapespline_nu::FitError>(())
 //! ```
 
-mod error;
-mod family;
 mod spline;
 mod system;
 
-pub use error::FitError;
-pub use shapespline_search::{Fit, SearchOptions, Status, Strategy};
-pub use spline::{NuSpline, Tension};
+pub use shapespline_search::{
+    Fit, FitError, Interpolant, SearchOptions, Status, Strategy, Tension,
+};
+pub use spline::NuSpline;
 
 /// The examples of the README are run as tests.
 #[cfg(doctest)]

@@ -2,6 +2,7 @@
 
 use shapespline_banded::{Row, Rows};
 use shapespline_geometry::{DVec3, DataPolygon};
+use shapespline_search::TensionSystem;
 
 /// The system (3.3)–(3.11) of paper 001 for the tangents `q_i`, each interior row divided by
 /// `h_{i−1} + h_i` so that its matrix has no unit: with `w = h_i/(h_{i−1} + h_i)`
@@ -66,5 +67,28 @@ impl Rows for NuSystem<'_> {
             let (diagonal, lower, right) = self.end(tangent, segments - 1, tension);
             Row { lower, diagonal, upper: 0.0, right }
         }
+    }
+}
+
+impl TensionSystem for NuSystem<'_> {
+    const SCALES_LEGS: bool = false;
+
+    fn polygon(&self) -> &DataPolygon {
+        self.polygon
+    }
+
+    fn tension(&self) -> &[f64] {
+        &self.tension
+    }
+
+    fn set_tension(&mut self, node: usize, tension: f64, rows: &mut Vec<usize>) {
+        self.tension[node] = tension;
+        rows.push(node);
+    }
+
+    #[inline]
+    fn legs(&self, segment: usize, tangents: [DVec3; 2]) -> [DVec3; 2] {
+        let third = self.polygon.spacing(segment) / 3.0;
+        tangents.map(|q| q * third)
     }
 }

@@ -7,6 +7,7 @@
 // Doc comments on Python classes are numpydoc docstrings: `points[0]` in them is no link.
 #![allow(rustdoc::broken_intra_doc_links)]
 
+use mimalloc::MiMalloc;
 use pyo3::prelude::*;
 
 mod curve;
@@ -22,6 +23,12 @@ mod report;
 mod shape;
 mod tangents;
 mod work;
+
+/// A fit of a million points takes and gives back a dozen arrays of tens of megabytes. The C library
+/// returns each to the system at once and has every page zeroed and mapped anew by the next fit, which
+/// took as long as the fit; this allocator keeps them for a moment.
+#[global_allocator]
+static ALLOCATOR: MiMalloc = MiMalloc;
 
 /// Compiled part of shapespline: the curves, their reports, and checks of any curve.
 #[pymodule(gil_used = false)]

@@ -2,13 +2,102 @@
 
 use std::ops::Range;
 
-use shapespline_geometry::DVec3;
+use shapespline_geometry::{DVec3, DataPolygon};
 
 /// A family of cubic interpolants of one data polygon with a tension `≥ 0` at each node.
 ///
 /// The search needs of it that growing tension draws the curve to the polygon in such a way that the
-/// shape criteria hold in the limit, and that tension at a node acts locally. To add a family,
-/// implement these four methods; the search, the criteria, the report and the curve follow.
+/// shape criteria hold in the limit, and that tension at a node acts locally.
+///
+/// # A family in a day
+///
+/// 1. **Say what tension is**: a number a node, 0 for none, growing without bound, under which the
+///    curve goes to the polygon *and its tangents tend to directions strictly between the chords*.
+///    The criteria then hold in the limit (paper 001, Theorems 4.7–4.13; paper 000, Lemmas 4.1–4.3).
+/// 2. **Say how tension makes tangents.** If the tangents solve a tridiagonal system, write its row
+///    `i`, divided so that it has no unit and is strictly diagonally dominant, as
+///    [`shapespline_banded::Rows`], and implement [`crate::TensionSystem`]; [`crate::SolvedFamily`]
+///    is then the family (`NuSystem` and `MannisSystem` are 70 lines each). If a tangent depends on
+///    its neighbours only, implement this trait itself (`Handles` of Catmull–Rom).
+/// 3. **Say where pulls are equal** ([`TensionFamily::weight`]) if equal tension does not already
+///    make the legs of neighbouring nodes alike.
+/// 4. **The curve**: a struct with a [`shapespline_geometry::Curve`], the tension and the boundary
+///    that implements [`crate::Interpolant`]. `PiecewiseCubic::through(polygon, legs)` is the curve
+///    unless its parameter is another one.
+/// 5. **`shape_preserving`** is [`crate::search_and_report`] and the assembly. `fit_many`, the report,
+///    evaluation, arc length and serialisation follow.
+/// 6. **Tests**: add the family to `tests/rust/src/families.rs`. Every property there — no violation
+///    on thousands of polygons, invariance, limits, bad input — then runs for it too. Plant
+///    an answer of your own besides: a curve the family reproduces.
+///
+/// ```
+/// use std::ops::Range;
+/// use shapespline_criteria::Checker;
+/// use shapespline_geometry::{Boundary, DVec3, DataPolygon, Parametrization, PiecewiseCubic};
+/// use shapespline_search::{SearchOptions, Status, TensionFamily, search};
+///
+/// /// Bessel's tangents (those of the parabola through three points), shortened by tension.
+/// struct Bessel<'a> {
+///     polygon: &'a DataPolygon,
+///     tension: Vec<f64>,
+/// }
+///
+/// impl Bessel<'_> {
+///     fn tangent(&self, i: usize) -> DVec3 {
+///         let (p, n) = (self.polygon, self.polygon.segments());
+///         let velocity = |k: usize| p.chord(k) / p.spacing(k);
+///         let full = if i == 0 {
+///             velocity(0)
+///         } else if i == n {
+///             velocity(n - 1)
+///         } else {
+///             let (before, after) = (p.spacing(i - 1), p.spacing(i));
+///             (velocity(i - 1) * after + velocity(i) * before) / (before + after)
+///         };
+///         full / (1.0 + self.tension[i])
+///     }
+/// }
+///
+/// impl TensionFamily for Bessel<'_> {
+///     type Error = std::convert::Infallible;
+///
+///     fn tension(&self) -> &[f64] {
+///         &self.tension
+///     }
+///     fn set_tension(
+///         &mut self,
+///         changes: &[(usize, f64)],
+///         touched: &mut Vec<Range<usize>>,
+///     ) -> Result<(), Self::Error> {
+///         for &(node, tension) in changes {
+///             self.tension[node] = tension;
+///             touched.push(node.saturating_sub(1)..(node + 1).min(self.polygon.segments()));
+///         }
+///         Ok(())
+///     }
+///     fn solve_again(&mut self) -> Result<(), Self::Error> {
+///         Ok(())
+///     }
+///     fn end_legs(&self, i: usize) -> [DVec3; 2] {
+///         [self.tangent(i), self.tangent(i + 1)].map(|q| q * self.polygon.spacing(i) / 3.0)
+///     }
+/// }
+///
+/// let points = [[0.0, 0.0], [2.0, 0.1], [4.0, 0.2], [4.2, 0.6], [4.3, 2.0], [4.2, 4.0]];
+/// let polygon =
+///     DataPolygon::planar(&points, &Parametrization::Uniform, Boundary::ZeroCurvature)?;
+/// let options = SearchOptions::default();
+/// let checker = Checker::new(&polygon, options.criteria, options.tolerances);
+/// let mut family = Bessel { polygon: &polygon, tension: vec![0.0; 6] };
+/// let outcome = search(&mut family, &checker, &options, &mut |_| {
+///     std::ops::ControlFlow::Continue(())
+/// })?;
+/// assert_eq!(outcome.diagnostics.status, Status::Solved);
+/// assert!(outcome.diagnostics.nodes_changed > 0);
+/// let legs = (0..5).map(|i| family.end_legs(i)).collect();
+/// let curve = PiecewiseCubic::through(polygon, legs)?;
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub trait TensionFamily: Sync {
     /// Why a system could not be solved.
     type Error;
@@ -35,4 +124,28 @@ pub trait TensionFamily: Sync {
 
     /// First and last Bézier leg, `a` and `c`, of a segment.
     fn end_legs(&self, segment: usize) -> [DVec3; 2];
+
+    /// Tension in units in which equal pulls at the two nodes of an inflecting coplanar segment put
+    /// its inflection where [`shapespline_criteria::separation`] says, in the limit: there the rule
+    /// (5.65) of paper 001 keeps `tension / weight` equal. One for ν-splines, for which (5.9) was
+    /// derived.
+    fn weight(&self, _node: usize) -> f64 {
+        1.0
+    }
+}
+
+/// [`TensionFamily::weight`] of a family whose tangents are, in the limit, `1/(1 + tension)` times the
+/// velocity `w L_{i−1}/h_{i−1} + (1−w) L_i/h_i`, `w = h_i/(h_{i−1} + h_i)`.
+///
+/// Those of the ν-spline are `6/(ν_i √(w(1−w)))` times it, and at an end with a given tangent `1/ν`
+/// times that: the legs agree where `1 + tension` is this weight times a common `ν/12`.
+#[must_use]
+pub fn velocity_weight(polygon: &DataPolygon, node: usize) -> f64 {
+    let n = polygon.segments();
+    if (node == 0 || node == n) && !polygon.is_closed() {
+        return if polygon.tangents().is_some() { 12.0 } else { 2.0 };
+    }
+    let before = if node == 0 { n - 1 } else { node - 1 };
+    let root = (polygon.spacing(before) / polygon.spacing(node)).sqrt();
+    2.0 / (root + 1.0 / root)
 }

@@ -16,16 +16,26 @@
 //! Source: M. I. Karavelas, P. D. Kaklis, Numerical Algorithms 23 (2000), section 5.2 (algorithm
 //! NUSSP), with errata E4 and E5.
 
+mod error;
 mod family;
+mod interpolant;
+mod many;
 mod options;
 mod outcome;
 mod pattern;
 mod relax;
 mod runs;
 mod search;
+mod system;
+mod tension;
 
-pub use family::TensionFamily;
+pub use error::FitError;
+pub use family::{TensionFamily, velocity_weight};
+pub use interpolant::Interpolant;
+pub use many::{Collection, fit_many};
 pub use options::{SearchOptions, Strategy};
 pub use outcome::{Diagnostics, Fit, Outcome, Phase, Status, Step};
 pub use pattern::Pattern;
-pub use search::search;
+pub use search::{search, search_and_report};
+pub use system::{SolvedFamily, TensionSystem, solve_legs};
+pub use tension::{Tension, per_point};

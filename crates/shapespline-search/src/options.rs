@@ -1,7 +1,7 @@
 //! How to search.
 
-use shapespline_criteria::{Criteria, Tolerances};
-use shapespline_geometry::InputError;
+use shapespline_criteria::{Checker, Criteria, Tolerances};
+use shapespline_geometry::{DataPolygon, InputError};
 
 /// The rule by which tension is raised, and whether it is relaxed afterwards.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
@@ -15,12 +15,18 @@ pub enum Strategy {
     /// without breaking a criterion.
     #[default]
     Fairest,
+    /// The rule of paper 000, section 4: `λ ← ρλ` with `ρ = step`, where `λ = 1/(1 + tension)`.
+    Reduction,
 }
 
 impl Strategy {
     /// All strategies with the names users write.
-    pub const NAMED: [(&'static str, Self); 3] =
-        [("nussp", Self::Nussp), ("growth", Self::Growth), ("fairest", Self::Fairest)];
+    pub const NAMED: [(&'static str, Self); 4] = [
+        ("nussp", Self::Nussp),
+        ("growth", Self::Growth),
+        ("fairest", Self::Fairest),
+        ("reduction", Self::Reduction),
+    ];
 
     /// The name users write.
     #[must_use]
@@ -29,6 +35,7 @@ impl Strategy {
             Self::Nussp => "nussp",
             Self::Growth => "growth",
             Self::Fairest => "fairest",
+            Self::Reduction => "reduction",
         }
     }
 }
@@ -42,10 +49,11 @@ pub struct SearchOptions {
     pub tolerances: Tolerances,
     /// How tension is raised.
     pub strategy: Strategy,
-    /// `Δν`: what is added (nussp), or the first tension (growth); positive.
+    /// `Δν`: what is added (nussp), or the first tension (growth); positive. For the reduction the
+    /// factor `ρ`, below one.
     pub step: f64,
     /// Largest number of checks of the curve while raising; at least one. `None` takes 10 000 for
-    /// the additive rule and 200 for growth, which doubles and cannot need more than f64 has.
+    /// the additive rule and the reduction and 200 for growth, which doubles and cannot need more than f64 has.
     pub max_iterations: Option<usize>,
 }
 
@@ -72,6 +80,11 @@ impl SearchOptions {
             let (argument, value) = ("step", self.step);
             return Err(InputError::Scalar { argument, value, allowed: "positive and finite" });
         }
+        if self.strategy == Strategy::Reduction && self.step >= 1.0 {
+            let (argument, value) = ("step", self.step);
+            let allowed = "in (0, 1) for strategy \"reduction\"";
+            return Err(InputError::Scalar { argument, value, allowed });
+        }
         if self.max_iterations == Some(0) {
             let argument = "max_iterations";
             return Err(InputError::Scalar { argument, value: 0.0, allowed: "at least 1" });
@@ -79,19 +92,30 @@ impl SearchOptions {
         Ok(())
     }
 
+    /// The checker of a polygon for these options.
+    ///
+    /// # Errors
+    /// As [`SearchOptions::validate`].
+    pub fn checker<'p>(&self, polygon: &'p DataPolygon) -> Result<Checker<'p>, InputError> {
+        self.validate()?;
+        Ok(Checker::new(polygon, self.criteria, self.tolerances))
+    }
+
     pub(crate) fn limit(&self) -> usize {
         self.max_iterations.unwrap_or(match self.strategy {
-            Strategy::Nussp => 10_000,
+            Strategy::Nussp | Strategy::Reduction => 10_000,
             Strategy::Growth | Strategy::Fairest => 200,
         })
     }
 
     /// The next tension of a node that has to be raised.
     pub(crate) fn raised(&self, tension: f64) -> f64 {
-        match self.strategy {
+        let next = match self.strategy {
             Strategy::Nussp => tension + self.step,
-            // No further than where squares of legs would underflow.
-            Strategy::Growth | Strategy::Fairest => (2.0 * tension).max(self.step).min(1e60),
-        }
+            Strategy::Growth | Strategy::Fairest => (2.0 * tension).max(self.step),
+            Strategy::Reduction => (1.0 + tension) / self.step - 1.0,
+        };
+        // No further than where squares of legs would underflow.
+        next.min(1e60)
     }
 }

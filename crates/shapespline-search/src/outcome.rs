@@ -63,6 +63,17 @@ pub struct Outcome {
     pub faults: Vec<(usize, Faults)>,
 }
 
+impl Outcome {
+    /// The outcome of a first check that found no fault.
+    #[must_use]
+    pub fn solved() -> Self {
+        let status = Status::Solved;
+        let diagnostics =
+            Diagnostics { status, iterations: 1, solves: 1, relaxations: 0, nodes_changed: 0 };
+        Self { diagnostics, history: Vec::new(), faults: Vec::new() }
+    }
+}
+
 /// A curve together with how it was found and what a check says of it.
 #[derive(Debug, Clone)]
 pub struct Fit<C> {

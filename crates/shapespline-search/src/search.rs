@@ -3,11 +3,11 @@
 use std::ops::{ControlFlow, Range};
 
 use rayon::prelude::*;
-use shapespline_criteria::{Checker, Faults};
+use shapespline_criteria::{Checker, Faults, ShapeReport};
 
 use crate::{
-    Diagnostics, Outcome, Pattern, Phase, SearchOptions, Status, Step, Strategy, TensionFamily,
-    relax::relax,
+    Diagnostics, FitError, Outcome, Pattern, Phase, SearchOptions, Status, Step, Strategy,
+    TensionFamily, relax::relax,
 };
 
 /// Touched neighbourhoods from which on they are checked on all threads.
@@ -35,6 +35,25 @@ pub fn search<F: TensionFamily>(
         status = state.verify(options)?;
     }
     Ok(state.outcome(status))
+}
+
+/// [`search`], and the report on the curve that results.
+///
+/// # Errors
+/// Those of the family's solver.
+pub fn search_and_report<F>(
+    family: &mut F,
+    checker: &Checker<'_>,
+    options: &SearchOptions,
+    monitor: &mut dyn FnMut(&Step) -> ControlFlow<()>,
+) -> Result<(Outcome, ShapeReport), FitError>
+where
+    F: TensionFamily,
+    FitError: From<F::Error>,
+{
+    let outcome = search(family, checker, options, monitor)?;
+    let report = checker.report_of(&outcome.faults, |i| family.end_legs(i));
+    Ok((outcome, report))
 }
 
 /// The family, the checker, and what is known to fail.
@@ -152,13 +171,14 @@ impl<'s, 'p, F: TensionFamily> State<'s, 'p, F> {
         }
         changes.sort_unstable_by_key(|c| c.0);
         changes.dedup_by_key(|c| c.0);
-        // (5.65): over a run of non-convex coplanar segments the tension is one and the same.
+        // (5.65): over a run of non-convex coplanar segments the pull is one and the same.
         for run in consecutive(&equal, self.closed().then_some(n)) {
             let nodes = || run.iter().flat_map(|&m| [m % n, (m + 1) % n]);
-            let largest = nodes().map(|i| tension[i]).fold(0.0, f64::max);
+            let pull = |i: usize| tension[i] / self.family.weight(i);
+            let level = options.raised(nodes().map(pull).fold(0.0, f64::max));
             for i in nodes() {
                 if let Ok(at) = changes.binary_search_by_key(&i, |c| c.0) {
-                    changes[at].1 = options.raised(largest);
+                    changes[at].1 = level * self.family.weight(i);
                 }
             }
         }

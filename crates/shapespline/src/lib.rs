@@ -8,7 +8,9 @@
 //! | [`banded`] | tridiagonal and cyclic solvers |
 //! | [`criteria`] | the shape criteria, decided exactly, and their report |
 //! | [`search`] | automatic tension: raise where a criterion fails, then relax |
-//! | [`nu`] | G² cubic ν-splines |
+//! | [`nu`] | ν-splines: G², one linear system |
+//! | [`tension`] | C² tension cubics: C² in a parameter of their own, one linear system |
+//! | [`catmull_rom`] | Catmull–Rom: C¹ or G¹, local, shape-preserving in closed form |
 //!
 //! ```
 //! use shapespline::prelude::*;
@@ -37,18 +39,26 @@
 //! ```
 
 pub use shapespline_banded as banded;
+pub use shapespline_catmull_rom as catmull_rom;
 pub use shapespline_criteria as criteria;
 pub use shapespline_geometry as geometry;
 pub use shapespline_nu as nu;
 pub use shapespline_search as search;
+pub use shapespline_tension as tension;
 
 /// What most users need.
 pub mod prelude {
+    pub use shapespline_catmull_rom::{CatmullRom, Continuity, HandleOptions};
     pub use shapespline_criteria::{Checker, Criteria, Criterion, ShapeReport, Tolerances};
     pub use shapespline_geometry::{
-        ArcLength, Boundary, DVec3, DataPolygon, Dimension, Parametrization, PiecewiseCubic, Side,
+        ArcLength, Boundary, Curve, DVec3, DataPolygon, Dimension, Parametrization, PiecewiseCubic,
+        Ragged, Side,
     };
-    pub use shapespline_nu::{Fit, FitError, NuSpline, SearchOptions, Status, Strategy, Tension};
+    pub use shapespline_nu::NuSpline;
+    pub use shapespline_search::{
+        Collection, Fit, FitError, Interpolant, SearchOptions, Status, Strategy, Tension, fit_many,
+    };
+    pub use shapespline_tension::{TangentScale, TensionSpline};
 }
 
 /// The examples of the README are run as tests.

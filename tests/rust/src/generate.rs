@@ -1,6 +1,6 @@
 //! Polygons that have been hard for somebody: deterministic, by seed.
 
-use shapespline::prelude::DVec3;
+use shapespline::prelude::{Boundary, DVec3, DataPolygon, Parametrization};
 
 /// A small deterministic generator (SplitMix64), so that every machine sees the same data.
 #[derive(Debug, Clone)]
@@ -106,4 +106,29 @@ impl Kind {
         }
         points
     }
+}
+
+/// A polygon of a kind; the case chooses boundary and parametrisation. `None` where a walk happens to
+/// step back onto its neighbour.
+#[must_use]
+pub fn polygon(kind: Kind, case: usize, random: &mut Random) -> Option<DataPolygon> {
+    let n = 2 + random.below(50);
+    let mut points = kind.points(n, random);
+    let boundary = match case % 4 {
+        0 if n > 2 => Boundary::Circular,
+        1 if n > 2 => {
+            if points[n - 1] != points[0] {
+                points.push(points[0]);
+            }
+            Boundary::Periodic
+        }
+        2 => Boundary::Tangents { start: random.vector(), end: random.vector() },
+        _ => Boundary::ZeroCurvature,
+    };
+    let parametrization = match case % 3 {
+        0 => Parametrization::Uniform,
+        1 => Parametrization::Chordal,
+        _ => Parametrization::Centripetal,
+    };
+    DataPolygon::new(points, &parametrization, boundary).ok()
 }

@@ -1,7 +1,9 @@
 //! Data for the tests that need more than one crate.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "test code")]
 
+pub mod families;
 pub mod generate;
+pub mod segments;
 
 use std::path::Path;
 

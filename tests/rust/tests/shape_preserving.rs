@@ -7,32 +7,9 @@
 use shapespline::prelude::*;
 use shapespline_tests::{
     feature_line,
-    generate::{Kind, Random},
+    generate::{Kind, Random, polygon},
     helix, points,
 };
-
-fn polygon(kind: Kind, case: usize, random: &mut Random) -> Option<DataPolygon> {
-    let n = 2 + random.below(50);
-    let mut points = kind.points(n, random);
-    let boundary = match case % 4 {
-        0 if n > 2 => Boundary::Circular,
-        1 if n > 2 => {
-            if points[n - 1] != points[0] {
-                points.push(points[0]);
-            }
-            Boundary::Periodic
-        }
-        2 => Boundary::Tangents { start: random.vector(), end: random.vector() },
-        _ => Boundary::ZeroCurvature,
-    };
-    let parametrization = match case % 3 {
-        0 => Parametrization::Uniform,
-        1 => Parametrization::Chordal,
-        _ => Parametrization::Centripetal,
-    };
-    // A walk may happen to step back onto its neighbour.
-    DataPolygon::new(points, &parametrization, boundary).ok()
-}
 
 fn options(strategy: Strategy) -> SearchOptions {
     SearchOptions { strategy, ..SearchOptions::default() }

@@ -6,7 +6,7 @@ use shapespline_geometry::{DataPolygon, InputError, PiecewiseBezier, length, pol
 
 use super::{Question, Segment, decide, measure};
 use crate::{
-    Calls, Checker, Criteria, Criterion, Faults, Notes, Record, ShapeReport, Tolerances, Undecided,
+    Calls, Checker, Criteria, Criterion, Notes, Record, ShapeReport, Tolerances, Undecided,
     notes::notes,
 };
 
@@ -117,6 +117,9 @@ impl<'a> CurveChecker<'a> {
     /// The report. Cost O(N); memory follows the violations and the open questions.
     #[must_use]
     pub fn report(&self) -> ShapeReport {
+        if self.is_cubic() {
+            return self.checker.report(|i| self.end_legs(i));
+        }
         let of = |i: usize| (i, self.check_segment(i));
         let found: Vec<(usize, Found)> = (0..self.checker.calls().len())
             .into_par_iter()
@@ -195,13 +198,6 @@ impl<'a> CurveChecker<'a> {
         if calls.is_empty() {
             return found;
         }
-        if let Some(legs) = self.legs(i) {
-            let faults = self.checker.faults(i, legs);
-            let failed = |c: &Criterion| faults.any(Faults::of(*c));
-            let record = |c| self.checker.record(i, legs, c);
-            found.records = Criterion::ALL.into_iter().filter(failed).map(record).collect();
-            return found;
-        }
         let pieces = self.segment(i);
         for criterion in calls.criteria().iter() {
             let Some(question) = self.question(i, criterion) else { continue };
@@ -230,13 +226,19 @@ impl<'a> CurveChecker<'a> {
         polygon.parameters()[segment] + local * polygon.spacing(segment)
     }
 
+    /// Whether each segment is one polynomial cubic.
+    fn is_cubic(&self) -> bool {
+        self.aligned && self.curve.degree() == 3 && !self.curve.is_rational()
+    }
+
+    fn end_legs(&self, i: usize) -> [DVec3; 2] {
+        let p = self.curve.piece(i);
+        [(p[1] - p[0]).truncate(), (p[3] - p[2]).truncate()]
+    }
+
     /// End legs, where a segment is one polynomial cubic.
     fn legs(&self, i: usize) -> Option<[DVec3; 2]> {
-        if !self.aligned || self.curve.degree() != 3 || self.curve.is_rational() {
-            return None;
-        }
-        let p = self.curve.piece(i);
-        Some([(p[1] - p[0]).truncate(), (p[3] - p[2]).truncate()])
+        self.is_cubic().then(|| self.end_legs(i))
     }
 
     fn segment(&self, i: usize) -> Segment {
@@ -256,6 +258,14 @@ impl<'a> CurveChecker<'a> {
         let largest = low.abs().max(high.abs()).max_element();
         let allowed = interpolation * length(high - low) + 16.0 * f64::EPSILON * largest;
         for i in 0..polygon.segments() {
+            if self.aligned {
+                // Nothing to cut: the ends of the piece are all there is to compare.
+                let p = self.curve.piece(i);
+                let off = |end: usize, k: usize| (p[k].truncate() / p[k].w - points[end]).length();
+                if off(i, 0) <= allowed && off(i + 1, p.len() - 1) <= allowed {
+                    continue;
+                }
+            }
             let parts = self.curve.between([u[i], u[i + 1]], points[i]);
             let at = |part: usize, last: bool| {
                 let control = &parts[part].control;

@@ -15,6 +15,7 @@ use pyo3::{
 use shapespline::{
     geometry::{Boundary, DVec3, DataPolygon, InputError, PiecewiseCubic, Side},
     nu::NuSpline,
+    search::Interpolant,
 };
 
 use crate::{diagnostics::Search, nu, pickle, work::detached};
@@ -69,19 +70,19 @@ impl Curve for NuSpline {
         Family::Nu
     }
     fn cubic(&self) -> &PiecewiseCubic {
-        self.curve()
+        Interpolant::curve(self)
     }
     fn tension(&self) -> &[f64] {
-        self.tension()
+        Interpolant::tension(self)
     }
     fn tangents(&self) -> Vec<DVec3> {
-        self.tangents()
+        Interpolant::tangents(self)
     }
     fn boundary(&self) -> Boundary {
-        self.boundary()
+        Interpolant::boundary(self)
     }
     fn polygon(&self) -> Result<DataPolygon, InputError> {
-        self.polygon()
+        Interpolant::polygon(self)
     }
     fn write(&self, bytes: Vec<u8>) -> Result<Vec<u8>, postcard::Error> {
         postcard::to_extend(self, bytes)

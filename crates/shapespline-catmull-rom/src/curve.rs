@@ -1,0 +1,155 @@
+//! The Catmull–Rom interpolant.
+
+use std::ops::ControlFlow;
+
+use shapespline_criteria::{Checker, Criteria, Tolerances};
+use shapespline_geometry::{Boundary, DataPolygon, InputError, PiecewiseCubic};
+use shapespline_search::{
+    Fit, FitError, Interpolant, Outcome, SearchOptions, Tension, per_point, search_and_report,
+};
+
+use crate::handles::Handles;
+
+/// What is continuous at the points besides the direction of the tangent.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
+pub enum Continuity {
+    /// The derivative: one handle scale a node.
+    #[default]
+    C1,
+    /// The direction only: each segment has handles of its own.
+    G1,
+}
+
+/// What to keep, and how closely to go to the bounds.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct HandleOptions {
+    /// The criteria to keep.
+    pub criteria: Criteria,
+    /// Their tolerances.
+    pub tolerances: Tolerances,
+    /// The part of each bound that a handle may have, in `(0, 1)`.
+    pub safety: f64,
+    /// Whether the two handles at a node have one scale.
+    pub continuity: Continuity,
+}
+
+impl Default for HandleOptions {
+    fn default() -> Self {
+        Self {
+            criteria: Criteria::ALL,
+            tolerances: Tolerances::default(),
+            safety: 0.9,
+            continuity: Continuity::C1,
+        }
+    }
+}
+
+impl HandleOptions {
+    /// Checks the ranges.
+    ///
+    /// # Errors
+    /// A tolerance or `safety` outside its range, NaN included.
+    pub fn validate(&self) -> Result<(), InputError> {
+        self.tolerances.validate()?;
+        if !(self.safety > 0.0 && self.safety < 1.0) {
+            let (argument, value) = ("safety", self.safety);
+            return Err(InputError::Scalar { argument, value, allowed: "in (0, 1)" });
+        }
+        Ok(())
+    }
+}
+
+/// A Catmull–Rom curve through points in the plane or in space. Immutable.
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct CatmullRom {
+    curve: PiecewiseCubic,
+    tension: Vec<f64>,
+    boundary: Boundary,
+    continuity: Continuity,
+}
+
+impl CatmullRom {
+    /// The Catmull–Rom curve of given (cardinal) tension: handles shortened by this part. Cost O(N).
+    ///
+    /// # Errors
+    /// Tension outside `[0, 1)` or not one a point; legs that overflow.
+    pub fn new(
+        polygon: DataPolygon,
+        tension: Tension<'_>,
+        continuity: Continuity,
+    ) -> Result<Self, FitError> {
+        let valid = |x: f64| (0.0..1.0).contains(&x);
+        let tension = tension.nodal(&polygon, "tension", "in [0, 1)", valid)?;
+        let factors = tension.iter().map(|t| 1.0 - t).collect();
+        let (legs, _) = Handles::new(&polygon, factors).finish();
+        Self::assemble(polygon, legs, tension, continuity)
+    }
+
+    /// The Catmull–Rom curve with the largest handles that keep the shape of the data.
+    ///
+    /// Closed forms bound the handles; a complete check follows, and the tension search where it
+    /// finds what closed forms do not decide. The fit says how it ended: the curve keeps the criteria
+    /// if its status is `Solved`. Cost O(N).
+    ///
+    /// # Errors
+    /// Options outside their range; legs that overflow.
+    pub fn shape_preserving(
+        polygon: DataPolygon,
+        options: &HandleOptions,
+    ) -> Result<Fit<Self>, FitError> {
+        options.validate()?;
+        let HandleOptions { criteria, tolerances, safety, continuity } = *options;
+        let checker = Checker::new(&polygon, criteria, tolerances);
+        let mut handles =
+            Handles::limited(&polygon, checker.calls(), &tolerances, safety, continuity);
+        let faults = checker.all_faults(|i| handles.legs()[i]);
+        let (mut outcome, report) = if faults.is_empty() {
+            (Outcome::solved(), checker.report_of(&faults, |i| handles.legs()[i]))
+        } else {
+            // What the closed forms leave: coplanarity, and faults of rounding.
+            handles = handles.under_tension();
+            let rest =
+                SearchOptions { criteria, tolerances, step: 0.25, ..SearchOptions::default() };
+            let go_on = &mut |_: &_| ControlFlow::Continue(());
+            search_and_report(&mut handles, &checker, &rest, go_on)?
+        };
+        drop(checker);
+        let (legs, tension) = handles.finish();
+        outcome.diagnostics.nodes_changed = tension.iter().filter(|&&t| t > 0.0).count();
+        let curve = Self::assemble(polygon, legs, tension, continuity)?;
+        Ok(Fit { curve, outcome, report })
+    }
+
+    /// What is continuous at the points.
+    #[must_use]
+    pub fn continuity(&self) -> Continuity {
+        self.continuity
+    }
+
+    fn assemble(
+        polygon: DataPolygon,
+        legs: Vec<[shapespline_geometry::DVec3; 2]>,
+        tension: Vec<f64>,
+        continuity: Continuity,
+    ) -> Result<Self, FitError> {
+        let boundary = polygon.boundary();
+        let tension = per_point(tension, polygon.is_closed());
+        Ok(Self { curve: PiecewiseCubic::through(polygon, legs)?, tension, boundary, continuity })
+    }
+}
+
+impl Interpolant for CatmullRom {
+    type Curve = PiecewiseCubic;
+
+    fn curve(&self) -> &PiecewiseCubic {
+        &self.curve
+    }
+
+    fn tension(&self) -> &[f64] {
+        &self.tension
+    }
+
+    fn boundary(&self) -> Boundary {
+        self.boundary
+    }
+}
