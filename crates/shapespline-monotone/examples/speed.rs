@@ -1,6 +1,6 @@
 //! Build and evaluation times: `cargo run --release -p shapespline-monotone --example speed`.
 //!
-//! The peer, SciPy's `PchipInterpolator`, is timed by `benches/pchip.py` in the same units.
+//! The peer, SciPy's `PchipInterpolator`, is timed by `tests/bench/pchip.py` in the same units.
 
 use shapespline_monotone::*;
 use std::hint::black_box;
