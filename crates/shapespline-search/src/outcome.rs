@@ -46,7 +46,7 @@ pub struct Diagnostics {
     pub iterations: usize,
     /// Solves, complete or in part.
     pub solves: usize,
-    /// Rounds of relaxation.
+    /// Runs of tension that relaxation tried to lower.
     pub relaxations: usize,
     /// Nodes whose tension is not zero in the end.
     pub nodes_changed: usize,

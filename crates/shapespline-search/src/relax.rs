@@ -1,11 +1,12 @@
 //! Lowering tension again: growth overshoots, and what is not needed is given back.
 //!
 //! Every connected run of tension is scaled by a factor of its own, found by bisection with a solve
-//! and an exact check at each step; a factor that breaks a criterion anywhere is not taken. Runs that
-//! cannot feel each other (a change dies away as `2^{−k}` over `k` nodes) are bisected together in
-//! one solve. Of runs that can, the one with the most tension goes first, and ties go together with
-//! one factor: the order comes from the data, not from the direction in which they are numbered, so
-//! reversed data give the reversed curve.
+//! and an exact check at each step; a factor that breaks a criterion anywhere is not taken. One run
+//! after the other: a change dies away as `2^{−k}` over `k` nodes, so each step solves and checks a
+//! neighbourhood that the step before left in the processor's cache. The run with the most tension
+//! goes first, and ties within reach of each other go together with one factor: the order comes from
+//! the data, not from the direction in which they are numbered, so reversed data give the reversed
+//! curve.
 
 use crate::{
     Phase, TensionFamily,
@@ -27,14 +28,21 @@ const SWEEPS: usize = 256;
 pub(crate) fn relax<F: TensionFamily>(state: &mut State<'_, '_, F>) -> Result<(), F::Error> {
     for sweep in 0..SWEEPS {
         let all = runs(state.family.tension(), state.closed());
-        let open = match sweep {
-            0 => (0..all.len()).collect(),
-            _ => lowerable(state, &all)?,
-        };
+        let mut open = vec![true; all.len()];
+        if sweep > 0 {
+            for (open, run) in open.iter_mut().zip(&all) {
+                *open = !state.stopped && can_be_lowered(state, run)?;
+            }
+        }
+        let mut heaviest_first: Vec<usize> = (0..all.len()).filter(|&r| open[r]).collect();
+        heaviest_first.sort_by(|&a, &b| all[b].total.total_cmp(&all[a].total));
         let mut changed = 0;
-        for batch in batches(state, &all, open) {
-            changed += lower(state, &all, &batch)?;
-            state.relaxations += 1;
+        for r in heaviest_first {
+            if !open[r] {
+                continue;
+            }
+            let group = tied(state, &all, &mut open, r);
+            changed += lower(state, &group)?;
             if state.wants_to_stop(Phase::Relax, changed) {
                 break;
             }
@@ -45,6 +53,40 @@ pub(crate) fn relax<F: TensionFamily>(state: &mut State<'_, '_, F>) -> Result<()
         }
     }
     Ok(())
+}
+
+/// Nodes of runs, with the tension they have.
+type Nodes = Vec<(usize, f64)>;
+
+fn nodes_of<F: TensionFamily>(state: &State<'_, '_, F>, run: &Run) -> Nodes {
+    let tension = state.family.tension();
+    run.nodes(tension.len()).map(|i| (i, tension[i])).collect()
+}
+
+/// The nodes of run `r` and of the open runs that tie with it within reach, or within reach of those;
+/// they are open no longer.
+fn tied<F: TensionFamily>(
+    state: &State<'_, '_, F>,
+    all: &[Run],
+    open: &mut [bool],
+    r: usize,
+) -> Nodes {
+    open[r] = false;
+    let mut group = vec![r];
+    let mut next = 0;
+    while next < group.len() {
+        let joining: Vec<usize> = neighbours(state, all, group[next])
+            .filter(|&o| open[o] && all[r].ties(&all[o]))
+            .collect();
+        for o in joining {
+            if open[o] {
+                open[o] = false;
+                group.push(o);
+            }
+        }
+        next += 1;
+    }
+    group.into_iter().flat_map(|g| nodes_of(state, &all[g])).collect()
 }
 
 /// Nodes between two runs, the shorter way round in closed data.
@@ -58,68 +100,6 @@ fn gap<F: TensionFamily>(state: &State<'_, '_, F>, a: &Run, b: &Run) -> usize {
     } else {
         a.first - (b.first + b.length - 1)
     }
-}
-
-/// The open runs in the order in which they are lowered: a run comes in the first batch in which every
-/// run within reach that outweighs it has had its turn.
-///
-/// The cost follows the number of runs, however long a chain of ever smaller runs may be.
-fn batches<F: TensionFamily>(
-    state: &State<'_, '_, F>,
-    all: &[Run],
-    open: Vec<usize>,
-) -> Vec<Vec<Vec<usize>>> {
-    const CLOSED: usize = usize::MAX;
-    const WAITING: usize = usize::MAX - 1;
-    let mut turn = vec![CLOSED; all.len()];
-    open.iter().for_each(|&r| turn[r] = WAITING);
-    let mut heaviest_first = open;
-    heaviest_first.sort_by(|&a, &b| all[b].total.total_cmp(&all[a].total));
-    let mut batches: Vec<Vec<usize>> = Vec::new();
-    for &r in &heaviest_first {
-        let after = neighbours(state, all, r)
-            .filter(|&o| turn[o] < WAITING && all[o].outweighs(&all[r]))
-            .map(|o| turn[o] + 1);
-        turn[r] = after.max().unwrap_or(0);
-        if turn[r] == batches.len() {
-            batches.push(Vec::new());
-        }
-        batches[turn[r]].push(r);
-    }
-    let ordered = |mut batch: Vec<usize>| {
-        batch.sort_unstable();
-        groups(state, all, batch)
-    };
-    batches.into_iter().map(ordered).collect()
-}
-
-/// The runs of a batch (ascending) in groups: within reach of each other are only ties, and ties are
-/// one group.
-fn groups<F: TensionFamily>(
-    state: &State<'_, '_, F>,
-    all: &[Run],
-    batch: Vec<usize>,
-) -> Vec<Vec<usize>> {
-    let mut groups: Vec<Vec<usize>> = Vec::new();
-    for r in batch {
-        match groups.last_mut() {
-            Some(group) if gap(state, &all[group[group.len() - 1]], &all[r]) <= REACH => {
-                group.push(r);
-            }
-            _ => groups.push(vec![r]),
-        }
-    }
-    // In closed data the last group may reach the first.
-    if groups.len() > 1 && state.closed() {
-        let (last, first) = (&groups[groups.len() - 1], groups[0][0]);
-        if gap(state, &all[last[last.len() - 1]], &all[first]) <= REACH {
-            let head = groups.remove(0);
-            if let Some(tail) = groups.last_mut() {
-                tail.extend(head);
-            }
-        }
-    }
-    groups
 }
 
 /// The other runs within reach of run `r`.
@@ -145,139 +125,62 @@ fn neighbours<'a, F: TensionFamily>(
     })
 }
 
-/// A group of runs under bisection for a common factor.
-struct Bisection {
-    /// Nodes of the group with the tension they had.
-    nodes: Vec<(usize, f64)>,
-    /// Factor known to break a criterion (or none yet), and factor known to keep them all.
-    breaks: f64,
-    keeps: f64,
-    trial: f64,
-}
-
-impl Bisection {
-    fn done(&self) -> bool {
-        self.keeps == 0.0 || self.keeps - self.breaks <= RESOLUTION * self.keeps
-    }
-}
-
-/// Lowers each group of a batch by bisection, all groups in one solve a step. Returns the number of
-/// nodes that changed.
-fn lower<F: TensionFamily>(
-    state: &mut State<'_, '_, F>,
-    all: &[Run],
-    batch: &[Vec<usize>],
-) -> Result<usize, F::Error> {
-    let mut groups = bisections(state, all, batch);
+/// Lowers nodes by a common factor, found by bisection. Returns the number of nodes that changed.
+fn lower<F: TensionFamily>(state: &mut State<'_, '_, F>, nodes: &Nodes) -> Result<usize, F::Error> {
+    state.relaxations += 1;
     // No tension at all comes first: growth often raises more nodes than it had to.
-    groups.iter_mut().for_each(|g| g.trial = 0.0);
-    for _ in 0..64 {
-        try_all(state, &groups, |g| if g.done() { g.keeps } else { g.trial })?;
-        let failed = failures(state, &groups);
-        for (group, failed) in groups.iter_mut().zip(failed) {
-            if group.done() {
-                continue;
-            }
-            if failed {
-                group.breaks = group.trial
-            } else {
-                group.keeps = group.trial
-            }
-            group.trial = 0.5 * (group.breaks + group.keeps);
-        }
-        if groups.iter().all(Bisection::done) || state.stopped {
+    if keeps_shape(state, nodes, 0.0)? {
+        return Ok(nodes.len());
+    }
+    let (mut breaks, mut keeps) = (0.0, 1.0);
+    while keeps - breaks > RESOLUTION * keeps && !state.stopped {
+        let trial = 0.5 * (breaks + keeps);
+        if trial <= breaks || trial >= keeps {
             break;
         }
+        if keeps_shape(state, nodes, trial)? {
+            keeps = trial;
+        } else {
+            breaks = trial;
+        }
     }
-    try_all(state, &groups, |g| g.keeps)?;
-    Ok(groups.iter().filter(|g| g.keeps < 1.0).map(|g| g.nodes.len()).sum())
+    scale(state, nodes, keeps)?;
+    Ok(if keeps < 1.0 { nodes.len() } else { 0 })
 }
 
-/// The runs that could be lowered by the resolution, each for itself and all others left as they are.
-fn lowerable<F: TensionFamily>(
+/// Whether a run could be lowered by the resolution, all others left as they are.
+fn can_be_lowered<F: TensionFamily>(
     state: &mut State<'_, '_, F>,
-    all: &[Run],
-) -> Result<Vec<usize>, F::Error> {
-    let mut found = Vec::new();
-    let mut waiting: Vec<usize> = (0..all.len()).collect();
-    while !waiting.is_empty() {
-        // Runs out of each other's reach share a solve; the tests are independent, so the order in
-        // which they are picked does not matter.
-        let mut batch: Vec<Vec<usize>> = Vec::new();
-        waiting.retain(|&r| {
-            let clear = |o: &Vec<usize>| gap(state, &all[o[0]], &all[r]) > REACH;
-            let fits = batch.last().is_none_or(clear) && batch.first().is_none_or(clear);
-            if fits {
-                batch.push(vec![r]);
-            }
-            !fits
-        });
-        let groups = bisections(state, all, &batch);
-        try_all(state, &groups, |_| 1.0 - RESOLUTION)?;
-        let failed = failures(state, &groups);
-        found.extend(batch.iter().zip(failed).filter(|(_, failed)| !failed).map(|(g, _)| g[0]));
-        try_all(state, &groups, |_| 1.0)?;
-    }
-    Ok(found)
+    run: &Run,
+) -> Result<bool, F::Error> {
+    let nodes = nodes_of(state, run);
+    let keeps = keeps_shape(state, &nodes, 1.0 - RESOLUTION)?;
+    scale(state, &nodes, 1.0)?;
+    Ok(keeps)
 }
 
-fn bisections<F: TensionFamily>(
-    state: &State<'_, '_, F>,
-    all: &[Run],
-    batch: &[Vec<usize>],
-) -> Vec<Bisection> {
-    let tension = state.family.tension();
-    let n = tension.len();
-    let nodes = |group: &Vec<usize>| {
-        group.iter().flat_map(|&r| all[r].nodes(n)).map(|i| (i, tension[i])).collect()
-    };
-    let new = |group| Bisection { nodes: nodes(group), breaks: -1.0, keeps: 1.0, trial: 1.0 };
-    batch.iter().map(new).collect()
-}
-
-fn try_all<F: TensionFamily>(
+/// Sets nodes to a factor of their tension; whether that leaves the curve without faults.
+fn keeps_shape<F: TensionFamily>(
     state: &mut State<'_, '_, F>,
-    groups: &[Bisection],
-    factor: impl Fn(&Bisection) -> f64,
+    nodes: &Nodes,
+    factor: f64,
+) -> Result<bool, F::Error> {
+    scale(state, nodes, factor)?;
+    // Before, there were none anywhere.
+    Ok(state.faults().is_empty())
+}
+
+fn scale<F: TensionFamily>(
+    state: &mut State<'_, '_, F>,
+    nodes: &Nodes,
+    factor: f64,
 ) -> Result<(), F::Error> {
     let present = state.family.tension();
-    let mut changes: Vec<(usize, f64)> = groups
+    let mut changes: Vec<(usize, f64)> = nodes
         .iter()
-        .flat_map(|g| {
-            let factor = factor(g);
-            g.nodes.iter().map(move |&(i, tension)| (i, tension * factor))
-        })
+        .map(|&(i, tension)| (i, tension * factor))
         .filter(|&(i, tension)| present[i] != tension)
         .collect();
     changes.sort_unstable_by_key(|c| c.0);
     state.set_tension(&changes)
-}
-
-/// Which groups broke something: a fault belongs to the group nearest to it.
-fn failures<F: TensionFamily>(state: &State<'_, '_, F>, groups: &[Bisection]) -> Vec<bool> {
-    let mut failed = vec![false; groups.len()];
-    let mut nodes: Vec<(usize, usize)> = groups
-        .iter()
-        .enumerate()
-        .flat_map(|(k, g)| g.nodes.iter().map(move |&(i, _)| (i, k)))
-        .collect();
-    nodes.sort_unstable();
-    let n = state.family.tension().len();
-    for &(segment, _) in state.faults() {
-        let after = nodes.partition_point(|&(i, _)| i <= segment);
-        let distance = |i: usize| {
-            let d = i.abs_diff(segment);
-            if state.closed() { d.min(n - d) } else { d }
-        };
-        let beside = [after.checked_sub(1), Some(after), Some(0), nodes.len().checked_sub(1)];
-        let nearest = beside
-            .into_iter()
-            .flatten()
-            .filter_map(|k| nodes.get(k))
-            .min_by_key(|&&(i, _)| distance(i));
-        if let Some(&(_, group)) = nearest {
-            failed[group] = true;
-        }
-    }
-    failed
 }

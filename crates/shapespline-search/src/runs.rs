@@ -22,9 +22,9 @@ impl Run {
         (first..first + length).map(move |i| i % n)
     }
 
-    /// Whether this run has more tension than another, beyond a tie.
-    pub(crate) fn outweighs(&self, other: &Self) -> bool {
-        self.total > other.total * (1.0 + TIE)
+    /// Whether this run has as much tension as another.
+    pub(crate) fn ties(&self, other: &Self) -> bool {
+        (self.total - other.total).abs() <= TIE * self.total
     }
 }
 
