@@ -12,6 +12,7 @@ from scipy.interpolate import BSpline, CubicSpline, PPoly, make_interp_spline
 
 import polygons
 import shapespline as ss
+from shapespline import _files
 
 # Look-alikes
 
@@ -230,3 +231,35 @@ def test_degenerate_points_make_a_report(points):
     report = ss.check_shape(points, make_interp_spline(u, points, k=1), parameters=u)
     assert report.counts()["torsion"][1] == 0
     assert isinstance(str(report), str)
+
+
+# Our other families
+
+
+@pytest.mark.parametrize("family", [ss.TensionSpline, ss.CatmullRom])
+def test_our_other_families(family, tmp_path):
+    points = polygons.load_points("protein_1a8o_ca")
+    curve = family(points)
+    own = curve.check()
+    assert ss.check_shape(points, curve).to_dict() == own.to_dict()
+    # Every third point: another polygon, the same pieces.
+    report = ss.check_shape(points[::3], curve, parameters=curve.parameters[::3])
+    assert report.counts()["torsion"][1] == 21
+    assert all(record.location in curve.parameters for record in own.nodes)
+    _files.write_curve(tmp_path / "c.json", curve)
+    again = _files.read_curve(tmp_path / "c.json")
+    found = ss.check_shape(
+        points, again.curve, parameters=again.parameters, boundary=again.boundary
+    )
+    assert found.counts() == own.counts()
+    text = (tmp_path / "c.json").read_text(encoding="utf-8")
+    assert ('"tension"' if family is ss.TensionSpline else '"catmull-rom"') in text
+
+
+def test_a_tension_spline_is_judged_at_its_points_only():
+    """Between them its parameter is that of no polynomial."""
+    curve = ss.TensionSpline(POINTS, tangent_scale=0.5)
+    u = curve.parameters.copy()
+    u[2] += 0.1
+    with pytest.raises(ValueError, match=r"parameters\[2\] = .* TensionSpline"):
+        ss.check_shape(curve(u), curve, parameters=u)

@@ -17,7 +17,14 @@ from typing import TYPE_CHECKING, Any, NoReturn
 import numpy as np
 
 from shapespline._convert import piecewise
-from shapespline._core import NuSpline, PiecewiseBezier, SpaceCurve, Tangents
+from shapespline._core import (
+    CatmullRom,
+    NuSpline,
+    PiecewiseBezier,
+    SpaceCurve,
+    Tangents,
+    TensionSpline,
+)
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -27,6 +34,8 @@ if TYPE_CHECKING:
 __all__ = ["CurveFile", "FileError", "Points", "read_curve", "read_points", "write_curve"]
 
 FORMAT = "shapespline-curve"
+#: Names of the families, as the command line has them.
+METHODS: dict[type, str] = {NuSpline: "nu", TensionSpline: "tension", CatmullRom: "catmull-rom"}
 #: Names of the column of parameters, in any case.
 PARAMETER = ("u", "t")
 AXES = ("x", "y", "z")
@@ -271,7 +280,7 @@ def write_curve(path: Path, curve: Any) -> None:
     pieces = piecewise(curve)
     entries: dict[str, Any] = {"format": FORMAT, "version": 1, "type": "bezier"}
     if isinstance(curve, SpaceCurve):
-        entries["method"] = "nu" if isinstance(curve, NuSpline) else type(curve).__name__
+        entries["method"] = METHODS.get(type(curve), type(curve).__name__)
         entries["parameters"] = curve.parameters.tolist()
         ends = curve.boundary
         entries["boundary"] = (

@@ -8,7 +8,7 @@ import numpy as np
 
 from shapespline import _core
 from shapespline._convert import _is_array, piecewise
-from shapespline._core import SpaceCurve
+from shapespline._core import SpaceCurve, TensionSpline
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -117,6 +117,8 @@ def check_shape(
         return curve.check(
             criteria, coplanarity=coplanarity, collinearity=collinearity, tolerance=tolerance
         )
+    if isinstance(curve, TensionSpline):
+        _at_its_points(curve, parameters)
     if _is_array(curve):
         chosen = _breaks(points, curve, parameters)
         curve = _core.PiecewiseBezier(curve, chosen)
@@ -140,6 +142,21 @@ def _is_own(points: Any, curve: SpaceCurve, parameters: Any) -> bool:
     if parameters is None:
         return True
     return not isinstance(parameters, str) and np.array_equal(parameters, curve.parameters)
+
+
+def _at_its_points(curve: TensionSpline, parameters: Any) -> None:
+    """Refuse other parameters than those of the points: between them u is no polynomial's."""
+    if parameters is None:
+        return
+    if isinstance(parameters, str) or np.ndim(parameters) != 1:
+        raise ValueError("parameters must be an array of a TensionSpline's own, or left out")
+    strange = np.flatnonzero(~np.isin(parameters, curve.parameters))
+    if strange.size:
+        i = int(strange[0])
+        raise ValueError(
+            f"parameters[{i}] = {np.asarray(parameters)[i]} is not one of the parameters at which "
+            "the TensionSpline has a point: it can be judged at these only"
+        )
 
 
 def _breaks(points: ArrayLike, control: Any, parameters: Any) -> Floats:
@@ -235,7 +252,9 @@ def inflection_count(curve: Any, direction: ArrayLike | None = None) -> Inflecti
     of w·(γ'×γ''), with corners counted by their turn (5.2). Over all directions, the count of a
     polygon is exact: sign vectors change only across the great circles normal to Lᵢ×Lᵢ₊₁, cost
     O(n² log n); of one spatial cubic it is 2 (Theorem 7.2). For other curves in space a direction
-    that shows the count is found among many, and ``exact`` says that more is not excluded. Along a
+    that shows the count is found among many, and ``exact`` says that more is not excluded; that
+    search is quadratic in the pieces and cannot be interrupted: give a direction to a curve of more
+    than a few hundred pieces, and to a polygon of more than a few thousand points. Along a
     given direction curves are counted exactly, by certified isolation of roots, cost O(n). In the
     plane the count of a Bézier curve whose control polygon is regular (its chords lie in one
     half-plane) never exceeds the polygon's (Corollary 4.5); in space it may. A closed curve is gone

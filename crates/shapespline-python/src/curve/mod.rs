@@ -128,11 +128,16 @@ impl dyn Curve + '_ {
     /// A record with its location in the curve's own parameter: the checker sees the image alone,
     /// run through linearly on each segment.
     pub(crate) fn located(&self, record: Record) -> Record {
-        if self.family() != Family::Tension || !record.location.is_finite() {
-            return record;
+        Record { location: self.own_parameter(record.location), ..record }
+    }
+
+    /// The curve's own parameter where the image, run through linearly on each segment, has `u`.
+    pub(crate) fn own_parameter(&self, u: f64) -> f64 {
+        if self.family() != Family::Tension || !u.is_finite() {
+            return u;
         }
-        let (segment, t) = self.cubic().locate(record.location, Side::Right);
-        Record { location: self.path().parameter(segment, t), ..record }
+        let (segment, t) = self.cubic().locate(u, Side::Right);
+        self.path().parameter(segment, t)
     }
 
     /// A report of the checker, with every location in the curve's own parameter.

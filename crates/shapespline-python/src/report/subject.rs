@@ -50,7 +50,13 @@ impl Judge<'_> {
 
     pub(crate) fn notes(&self) -> Notes {
         match self {
-            Self::Own(checker, legs, _) => checker.notes(|i| legs[i]),
+            Self::Own(checker, legs, curve) => {
+                let mut notes = checker.notes(|i| legs[i]);
+                let nodes = notes.nodes.iter_mut().map(|record| &mut record.location);
+                let segments = notes.oscillations.iter_mut().map(|record| &mut record.location);
+                nodes.chain(segments).for_each(|u| *u = curve.own_parameter(*u));
+                notes
+            }
             Self::Other(checker) => checker.notes(),
         }
     }
