@@ -32,11 +32,11 @@ def same(a, b):
 
 
 @pytest.mark.parametrize("protocol", range(pickle.HIGHEST_PROTOCOL + 1))
-@pytest.mark.parametrize("case", cases.small(), ids=str)
+@pytest.mark.parametrize("case", cases.of_every_family(cases.small()), ids=str)
 def test_pickling(case, protocol):
-    for curve in (case.fit(tension=0.5), case.preserve()):
+    for curve in (case.tense(0.5), case.preserve()):
         again = pickle.loads(pickle.dumps(curve, protocol))
-        assert type(again) is ss.NuSpline
+        assert type(again) is case.family
         same(curve, again)
         assert again.check().to_dict() == curve.check().to_dict()
     # What the search did is part of what it returned.
@@ -45,7 +45,7 @@ def test_pickling(case, protocol):
 
 
 @pytest.mark.parametrize("copied", [copy.copy, copy.deepcopy])
-@pytest.mark.parametrize("case", cases.small(), ids=str)
+@pytest.mark.parametrize("case", cases.of_every_family(cases.small()), ids=str)
 def test_copying(case, copied):
     curve = case.preserve()
     same(curve, copied(curve))

@@ -96,9 +96,7 @@ class Fits(Sequence["SpaceCurve | None"]):
     def __getitem__(self, index: int) -> SpaceCurve | None: ...
     @overload
     def __getitem__(self, index: slice) -> Sequence[SpaceCurve | None]: ...
-    def __getitem__(
-        self, index: int | slice
-    ) -> SpaceCurve | None | Sequence[SpaceCurve | None]:
+    def __getitem__(self, index: int | slice) -> SpaceCurve | Sequence[SpaceCurve | None] | None:
         """Return the curve of an index, or a tuple of those of a slice."""
         return self._curves[index]
 

@@ -45,7 +45,7 @@ const BLOCK: usize = 2048;
 /// >>> report = ss.NuSpline(points, "uniform").check()
 /// >>> worst = min(report.violations, key=lambda record: record.margin)
 /// >>> worst.criterion, worst.segment, worst.satisfied
-/// ('convexity', 2, False)
+/// ('torsion', 1, False)
 #[pyclass(module = "shapespline", frozen, get_all, eq, hash)]
 #[derive(Debug, Clone)]
 pub(crate) struct ShapeRecord {
