@@ -14,6 +14,7 @@ from shapespline._core import (
     CatmullRom,
     Diagnostics,
     NuSpline,
+    PiecewiseBezier,
     SearchStep,
     ShapeRecord,
     ShapeReport,
@@ -24,20 +25,32 @@ from shapespline._core import (
 )
 from shapespline._errors import ConvergenceError
 from shapespline._many import Fits, fit_many
+from shapespline._polygon import PolygonShape, polygon_shape
+from shapespline._records import NodeRecord, OscillationRecord, UndecidedRecord
+from shapespline._shape import InflectionCount, check_shape, inflection_count
 
 __all__ = [
     "CatmullRom",
     "ConvergenceError",
     "Diagnostics",
     "Fits",
+    "InflectionCount",
+    "NodeRecord",
     "NuSpline",
+    "OscillationRecord",
+    "PiecewiseBezier",
+    "PolygonShape",
     "SearchStep",
     "ShapeRecord",
     "ShapeReport",
     "SpaceCurve",
     "Tangents",
     "TensionSpline",
+    "UndecidedRecord",
     "__version__",
+    "check_shape",
     "fit_many",
+    "inflection_count",
     "plot",
+    "polygon_shape",
 ]

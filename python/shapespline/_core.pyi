@@ -1,8 +1,9 @@
 from collections.abc import Iterable, Sequence
-from typing import Literal, NoReturn, TypedDict, final, overload
+from typing import Any, Literal, NoReturn, TypedDict, final, overload
 
 import numpy as np
 import pandas as pd  # type: ignore[import-untyped, unused-ignore]
+from matplotlib.axes import Axes
 from numpy.typing import ArrayLike, NDArray
 from scipy.interpolate import (  # type: ignore[import-untyped, unused-ignore]
     BSpline,
@@ -10,12 +11,15 @@ from scipy.interpolate import (  # type: ignore[import-untyped, unused-ignore]
 )
 from typing_extensions import Self, disjoint_base
 
+from shapespline._records import NodeRecord, OscillationRecord, UndecidedRecord
+
 __version__: str
 
 __all__ = [
     "CatmullRom",
     "Diagnostics",
     "NuSpline",
+    "PiecewiseBezier",
     "SearchStep",
     "ShapeRecord",
     "ShapeReport",
@@ -23,8 +27,13 @@ __all__ = [
     "Tangents",
     "TensionSpline",
     "__version__",
+    "_check_shape",
     "_curve_from_bytes",
+    "_curve_inflections",
     "_fit_many",
+    "_piecewise_from_bytes",
+    "_polygon_inflections",
+    "_polygon_shape",
     "_report_from_bytes",
 ]
 
@@ -52,6 +61,11 @@ class _Record(TypedDict):
     margin: float | None
     location: float | None
 
+class _Undecided(TypedDict):
+    segment: int
+    criterion: _Criterion
+    interval: list[float]
+
 class _Report(TypedDict):
     ok: bool
     margin: float | None
@@ -61,7 +75,7 @@ class _Report(TypedDict):
     tolerance: float
     segments: list[_Record]
     violations: list[_Record]
-    undecided: list[_Record]
+    undecided: list[_Undecided]
 
 @disjoint_base
 class SpaceCurve:
@@ -223,6 +237,35 @@ class Tangents:
     def __reduce__(self) -> tuple[type[Tangents], tuple[_Floats, _Floats]]: ...
 
 @final
+class PiecewiseBezier:
+    def __new__(
+        cls, control: ArrayLike, breaks: ArrayLike, *, weights: ArrayLike | None = None
+    ) -> PiecewiseBezier: ...
+    @classmethod
+    def from_bspline(
+        cls,
+        knots: ArrayLike,
+        control: ArrayLike,
+        degree: int,
+        *,
+        weights: ArrayLike | None = None,
+    ) -> PiecewiseBezier: ...
+    @classmethod
+    def from_power(cls, coefficients: ArrayLike, breaks: ArrayLike) -> PiecewiseBezier: ...
+    @property
+    def control(self) -> _Floats: ...
+    @property
+    def weights(self) -> _Floats | None: ...
+    @property
+    def breaks(self) -> _Floats: ...
+    @property
+    def degree(self) -> int: ...
+    def __call__(self, u: ArrayLike) -> _Floats: ...
+    def __copy__(self) -> PiecewiseBezier: ...
+    def __deepcopy__(self, _memo: object) -> PiecewiseBezier: ...
+    def __reduce__(self) -> tuple[object, tuple[bytes]]: ...
+
+@final
 class ShapeRecord:
     def __new__(
         cls,
@@ -262,10 +305,17 @@ class ShapeReport:
     @property
     def segments(self) -> list[ShapeRecord]: ...
     @property
-    def undecided(self) -> list[ShapeRecord]: ...
+    def undecided(self) -> list[UndecidedRecord]: ...
+    @property
+    def nodes(self) -> list[NodeRecord]: ...
+    @property
+    def oscillations(self) -> list[OscillationRecord]: ...
+    @property
+    def boundary(self) -> Literal["zero-curvature", "periodic", "circular"] | Tangents: ...
     def counts(self) -> dict[_Criterion, tuple[int, int]]: ...
     def to_dict(self) -> _Report: ...
     def to_dataframe(self) -> pd.DataFrame: ...
+    def plot(self, ax: Axes | None = None) -> Axes: ...
     def _repr_html_(self) -> str: ...
     def __copy__(self) -> ShapeReport: ...
     def __deepcopy__(self, _memo: object) -> ShapeReport: ...
@@ -327,3 +377,26 @@ def _fit_many(
     tension: float,
     tangent_scale: float,
 ) -> tuple[list[SpaceCurve | None], dict[int, Exception]]: ...
+def _piecewise_from_bytes(data: bytes) -> PiecewiseBezier: ...
+def _check_shape(
+    points: ArrayLike,
+    curve: PiecewiseBezier,
+    parameters: _Parametrization | float | ArrayLike | None,
+    boundary: _Boundary | Tangents | None,
+    criteria: _Criterion | Iterable[_Criterion] | None,
+    coplanarity: float,
+    collinearity: float,
+    tolerance: float,
+) -> ShapeReport: ...
+def _curve_inflections(
+    curve: PiecewiseBezier, direction: ArrayLike | None
+) -> tuple[int, _Floats, bool]: ...
+def _polygon_inflections(
+    points: ArrayLike, direction: ArrayLike | None
+) -> tuple[int, _Floats, bool]: ...
+def _polygon_shape(
+    points: ArrayLike,
+    parameters: _Parametrization | float | ArrayLike,
+    boundary: _Boundary | Tangents,
+    tolerance: float,
+) -> dict[str, Any]: ...

@@ -7,11 +7,14 @@ Exit status: 0 when done, 1 when the shape does not hold, 2 for bad input (one l
 from __future__ import annotations
 
 import argparse
+import json
+import re
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import shapespline
+from shapespline._files import FileError, read_curve, read_points
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -50,6 +53,86 @@ def _add_demo(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> 
     parser.set_defaults(run=_demo)
 
 
+def _check(options: argparse.Namespace) -> int:
+    data = read_points(options.points)
+    curve = read_curve(options.curve)
+    # What the curve's own file says comes first.
+    parameters = data.parameters if curve.parameters is None else curve.parameters
+    try:
+        report = shapespline.check_shape(
+            data.points,
+            curve.curve,
+            parameters=parameters,
+            boundary=options.boundary or curve.boundary,
+            criteria=options.criteria,
+            coplanarity=options.coplanarity,
+            collinearity=options.collinearity,
+            tolerance=options.tolerance,
+        )
+    except ValueError as error:
+        text = str(error)
+        if line := data.locate(text):
+            raise FileError(data.path, text, line) from None
+        # Points and curve disagree, and the curve says so; or an option is out of range.
+        about_option = re.match(r"(criteria|coplanarity|collinearity|tolerance)\b", text)
+        raise (InputError(text) if about_option else FileError(curve.path, text)) from None
+    if options.report:
+        text = json.dumps(report.to_dict(), indent=1, allow_nan=False)
+        try:
+            options.report.write_text(text + "\n", encoding="utf-8")
+        except OSError as error:
+            raise FileError(options.report, f"cannot be written: {error.strerror}") from None
+    print(report)
+    return 0 if report.ok else 1
+
+
+def _add_check(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    text = "check whether a curve, whoever made it, keeps the shape of the points it passes through"
+    parser = commands.add_parser(
+        "check",
+        help=text,
+        description=text.capitalize() + ".",
+        epilog="Exit status: 0 when the shape is kept, 1 when it is not or stays undecided, "
+        "2 for bad input.",
+    )
+    parser.add_argument(
+        "points",
+        type=Path,
+        metavar="POINTS.csv",
+        help="one point a line; with a header, columns x, y, perhaps z, and perhaps u (parameters)",
+    )
+    parser.add_argument(
+        "curve",
+        type=Path,
+        metavar="CURVE.json",
+        help="Bézier pieces, a B-spline or a piecewise polynomial",
+    )
+    names = "convexity, inflection, torsion, coplanarity, collinearity, global-convexity"
+    parser.add_argument(
+        "--criteria",
+        type=lambda names: [name.strip() for name in names.split(",")],
+        metavar="NAME,…",
+        help=f"any of {names} (default: all but the last)",
+    )
+    parser.add_argument(
+        "--boundary",
+        choices=["zero-curvature", "natural", "periodic", "circular"],
+        help="what stands in for the missing chords at the ends (default: what CURVE.json says)",
+    )
+    for name, default, what in (
+        ("coplanarity", 0.2, "sine of the largest angle between binormal and plane normal"),
+        ("collinearity", 0.2, "sine of the largest angle between tangent and line"),
+        ("tolerance", 1e-9, "what counts as zero, and as passing through a point"),
+    ):
+        parser.add_argument(
+            f"--{name}", type=float, default=default, help=f"{what} (default: %(default)s)"
+        )
+    parser.add_argument(
+        "--report", type=Path, metavar="OUT.json", help="write the whole report to this file"
+    )
+    parser.set_defaults(run=_check)
+
+
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="shapespline", description="Splines that interpolate data and keep its shape."
@@ -59,6 +142,7 @@ def _parser() -> argparse.ArgumentParser:
     )
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
     _add_demo(commands)
+    _add_check(commands)
     return parser
 
 
@@ -67,7 +151,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     options = _parser().parse_args(arguments)
     try:
         status: int = options.run(options)
-    except InputError as error:
+    except (InputError, FileError) as error:
         print(f"shapespline: {error}", file=sys.stderr)
         return 2
     except KeyboardInterrupt:

@@ -25,6 +25,7 @@ __all__ = ["criteria", "curvature", "curve", "torsion"]
 CURVE = "#1f5fa8"
 DATA = "#8a8f98"
 WRONG = "#c8442f"
+OPEN = "#d99a1e"
 
 
 def _axes(ax: Axes | None, *, space: bool = False) -> Axes:
@@ -220,7 +221,7 @@ def torsion(
 
 
 def criteria(report: ShapeReport, *, ax: Axes | None = None) -> Axes:
-    """Draw which criterion each segment calls for, and where it is violated.
+    """Draw which criterion each segment calls for, where it is violated, and what stays undecided.
 
     Parameters
     ----------
@@ -243,18 +244,26 @@ def criteria(report: ShapeReport, *, ax: Axes | None = None) -> Axes:
     ax = _axes(ax)
     names = list(report.counts())
     records = [r for r in report.segments if r.applicable]
-    for satisfied, color in ((True, CURVE), (False, WRONG)):
-        chosen = [r for r in records if r.satisfied == satisfied]
+    undecided = {(u.segment, u.criterion) for u in report.undecided}
+    decided = [r for r in records if (r.segment, r.criterion) not in undecided]
+    unsettled = [r for r in records if (r.segment, r.criterion) in undecided]
+    groups = [
+        ("satisfied", [r for r in decided if r.satisfied], CURVE, "s", 14),
+        ("violated", [r for r in decided if not r.satisfied], WRONG, "X", 42),
+    ]
+    if unsettled:
+        groups.append(("undecided", unsettled, OPEN, "D", 30))
+    for label, chosen, color, marker, size in groups:
         ax.scatter(
             [r.segment for r in chosen],
             [names.index(r.criterion) for r in chosen],
-            marker="s" if satisfied else "X",
-            s=14 if satisfied else 42,
+            marker=marker,
+            s=size,
             color=color,
             linewidth=0,
-            label=("satisfied" if satisfied else "violated") + f" ({len(chosen)})",
+            label=f"{label} ({len(chosen)})",
         )
     ax.set(xlabel="segment", ylim=(len(names) - 0.5, -0.5))
     ax.set_yticks(range(len(names)), names)
-    ax.legend(loc="lower left", bbox_to_anchor=(0, 1), ncols=2, frameon=False)
+    ax.legend(loc="lower left", bbox_to_anchor=(0, 1), ncols=len(groups), frameon=False)
     return ax

@@ -1,10 +1,13 @@
-//! Tridiagonal systems with scalar or vector right-hand sides.
+//! Tridiagonal systems with scalar or vector right-hand sides, block tridiagonal ones, and strictly
+//! convex tridiagonal programs.
 //!
-//! Three solvers, all O(n) and without pivoting (the systems of interpolating splines are strictly
-//! diagonally dominant):
-//! [`solve_tridiagonal`] and [`solve_cyclic`] work in place on arrays, [`Resolvable`] keeps what it
-//! needs to solve again only where rows changed.
+//! All solvers are O(n) and without pivoting (the systems of interpolating splines are strictly
+//! diagonally dominant or positive definite): [`solve_tridiagonal`] and [`solve_cyclic`] work in place
+//! on arrays, [`Resolvable`] keeps what it needs to solve again only where rows changed,
+//! [`block_tridiagonal`] takes 2×2 blocks, and [`box_qp`] minimises a quadratic form between bounds.
 
+pub mod block_tridiagonal;
+pub mod box_qp;
 mod cyclic;
 mod error;
 mod resolvable;

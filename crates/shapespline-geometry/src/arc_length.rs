@@ -1,5 +1,7 @@
 //! Arc length, and parameters at given arc lengths.
 
+use rayon::prelude::*;
+
 use crate::{CubicSegment, Curve, PiecewiseCubic, Side, vector::length};
 
 /// Nodes and weights of the ten-point Gauss–Legendre rule on `[−1, 1]`, positive half.
@@ -58,12 +60,14 @@ impl<'a, C: Curve + ?Sized> ArcLength<'a, C> {
     #[must_use]
     pub fn new(curve: &'a C) -> Self {
         let cubic = curve.cubic();
+        let measure = |i: usize| cubic.segment(i).arc_length(0.0, 1.0);
+        let lengths = (0..cubic.segments()).into_par_iter().with_min_len(1024).map(measure);
+        // In space for the zero before the first; then the running sums take the lengths' places.
+        let mut upto: Vec<f64> = rayon::iter::once(0.0).chain(lengths).collect();
         let mut sum = 0.0;
-        let mut upto = Vec::with_capacity(cubic.segments() + 1);
-        upto.push(sum);
-        for i in 0..cubic.segments() {
-            sum += cubic.segment(i).arc_length(0.0, 1.0);
-            upto.push(sum);
+        for length in &mut upto {
+            sum += *length;
+            *length = sum;
         }
         Self { curve, upto }
     }

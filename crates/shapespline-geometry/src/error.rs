@@ -70,6 +70,21 @@ pub enum InputError {
         /// The last point.
         end: glam::DVec3,
     },
+    /// Numbers at the nodes of closed data whose last is not the first.
+    #[error(
+        "{argument}[{last}] must equal {argument}[0] for boundary \"periodic\", got {end} and \
+             {start}"
+    )]
+    Unequal {
+        /// Name of the argument.
+        argument: &'static str,
+        /// Index of the last number.
+        last: usize,
+        /// The first number.
+        start: f64,
+        /// The last number.
+        end: f64,
+    },
     /// A number outside the range it must lie in.
     #[error("{argument}[{index}] must be {allowed}, got {value}")]
     OutOfRange {

@@ -99,11 +99,7 @@ impl PiecewiseCubic {
             return Err(InputError::Length { argument, expected, found, per });
         }
         check_increasing("knots", &knots)?;
-        let finite = |[a, c]: &[DVec3; 2]| a.is_finite() && c.is_finite();
-        if let Some(index) = legs.iter().position(|pair| !finite(pair)) {
-            let value = f64::NAN;
-            return Err(InputError::NotFinite { argument: "legs", index, value });
-        }
+        check_legs(&legs)?;
         Ok(Self { knots, points, legs, dimension, domain, locator: OnceLock::new() })
     }
 
@@ -115,7 +111,8 @@ impl PiecewiseCubic {
         let domain = if polygon.is_closed() { Domain::Closed } else { Domain::Open };
         let dimension = polygon.dimension();
         let (points, knots) = polygon.into_points_and_parameters();
-        Self::new(knots, points, legs, dimension, domain)
+        check_legs(&legs)?;
+        Ok(Self { knots, points, legs, dimension, domain, locator: OnceLock::new() })
     }
 
     /// The knots `u_0 < … < u_N`.
@@ -400,6 +397,19 @@ impl Curve for PiecewiseCubic {
     ) -> Result<(), InputError> {
         self.evaluate_many(u, order, side, out)
     }
+}
+
+fn check_legs(legs: &[[DVec3; 2]]) -> Result<(), InputError> {
+    // Zero times a number is zero, times an infinity or NaN it is NaN: one sum for all, no branch.
+    let zero = legs.iter().fold(DVec3::ZERO, |sum, [a, c]| sum + *a * 0.0 + *c * 0.0);
+    if zero == DVec3::ZERO {
+        return Ok(());
+    }
+    let finite = |[a, c]: &[DVec3; 2]| a.is_finite() && c.is_finite();
+    let index = legs.iter().position(|pair| !finite(pair)).unwrap_or(0);
+    let of_legs = legs[index].into_iter().flat_map(|leg| leg.to_array());
+    let value = of_legs.into_iter().find(|x| !x.is_finite()).unwrap_or(f64::NAN);
+    Err(InputError::NotFinite { argument: "legs", index, value })
 }
 
 #[cfg(test)]

@@ -91,12 +91,15 @@ impl PiecewiseBezier {
                 scaled.push(c * power);
                 power *= h;
             }
-            control.extend((0..=degree).map(|j| {
-                // The constant last: it may be far larger than the rest.
-                let rest = (1..=j)
-                    .fold(DVec3::ZERO, |sum, k| sum + scaled[k] * (rows[j][k] / rows[degree][k]));
-                (scaled[0] + rest).extend(1.0)
-            }));
+            let mut points: Vec<DVec3> = (0..=degree)
+                .map(|j| {
+                    // The constant last: it may be far larger than the rest.
+                    let part = |k: usize| scaled[k] * (rows[j][k] / rows[degree][k]);
+                    scaled[0] + (1..=j).fold(DVec3::ZERO, |sum, k| sum + part(k))
+                })
+                .collect();
+            still_ends(&mut points, scaled.iter().fold(DVec3::ZERO, |sum, c| sum + c.abs()));
+            control.extend(points.iter().map(|p| p.extend(1.0)));
         }
         Self::homogeneous(breaks, control, degree, dimension, false)
     }
@@ -136,7 +139,12 @@ impl PiecewiseBezier {
         Self::homogeneous(breaks, pieces, degree, dimension, true)
     }
 
-    fn homogeneous(
+    /// From control points in homogeneous coordinates `(w x, w y, w z, w)`, as [`Self::piece`] gives
+    /// them; the weights of a curve that is not rational are not looked at.
+    ///
+    /// # Errors
+    /// As [`PiecewiseBezier::new`]; a rational curve with weights that are not positive.
+    pub fn homogeneous(
         breaks: Vec<f64>,
         control: Vec<DVec4>,
         degree: usize,
@@ -144,6 +152,10 @@ impl PiecewiseBezier {
         rational: bool,
     ) -> Result<Self, InputError> {
         check_shape(&breaks, control.len(), degree, "control")?;
+        if let Some(index) = control.iter().position(|p| rational && p.w <= 0.0) {
+            let (argument, value) = ("weights", control[index].w);
+            return Err(InputError::OutOfRange { argument, index, value, allowed: "positive" });
+        }
         if let Some(index) = control.iter().position(|p| !p.is_finite()) {
             let entries = control[index].to_array();
             let value = entries.into_iter().find(|x| !x.is_finite()).unwrap_or(f64::NAN);
@@ -248,6 +260,19 @@ impl From<&PiecewiseCubic> for PiecewiseBezier {
     }
 }
 
+/// Components of the end legs that are rounding beside `size` become zero: a derivative that is zero
+/// at an end (common in monotone interpolants) is not to be given a sign by the change of basis.
+fn still_ends(points: &mut [DVec3], size: DVec3) {
+    let last = points.len() - 1;
+    for (end, next) in [(0, 1), (last, last - 1)] {
+        for axis in 0..3 {
+            if (points[next][axis] - points[end][axis]).abs() <= 4.0 * f64::EPSILON * size[axis] {
+                points[next][axis] = points[end][axis];
+            }
+        }
+    }
+}
+
 fn weighted(control: &[DVec3], weights: &[f64]) -> Result<Vec<DVec4>, InputError> {
     if weights.len() != control.len() {
         let (expected, found) = (control.len(), weights.len());
@@ -289,4 +314,28 @@ fn check_shape(
         return Err(InputError::Length { argument, expected, found, per });
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Hermite pieces between random values whose derivative at the end is zero in one component.
+    #[test]
+    fn a_derivative_of_zero_at_the_end_stays_zero() {
+        for i in 0..200 {
+            let x = f64::from(i);
+            let breaks = vec![10.0, 10.3 + (1.1 * x).sin().abs()];
+            let (h, start, slope) = (breaks[1] - breaks[0], 5.0 * (1.7 * x).sin(), x.cos());
+            let secant = (2.0 * (0.6 * x).cos() - start) / h;
+            let (c3, c2) = ((slope - 2.0 * secant) / (h * h), (3.0 * secant - 2.0 * slope) / h);
+            let coefficients = [(c3, 0.0), (c2, 1.0), (slope, 0.0), (start, 0.0)]
+                .map(|(y, z)| DVec3::new(0.0, y, z));
+            let curve = PiecewiseBezier::from_power(breaks, &coefficients, 3, Dimension::Three);
+            let curve = curve.unwrap();
+            let p = curve.piece(0);
+            assert_eq!(p[3].y, p[2].y, "{i}");
+            assert!(p[3].z > p[2].z && p[1].z == p[0].z);
+        }
+    }
 }

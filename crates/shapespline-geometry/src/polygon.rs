@@ -94,10 +94,10 @@ impl DataPolygon {
         parametrization: &Parametrization,
         boundary: Boundary,
     ) -> Result<Self, InputError> {
-        check_points(&points, boundary)?;
-        check_chords(&points)?;
+        check_ends(&points, boundary)?;
+        let longest = check_chords(&points)?;
         let parameters = parametrization.parameters(&points)?;
-        check_velocities(&points, &parameters)?;
+        check_velocities(&points, &parameters, longest)?;
         let tangents = end_tangents(&points, &parameters, boundary)?;
         let directions = OnceLock::new();
         Ok(Self { points, parameters, directions, boundary, tangents, dimension })
@@ -246,7 +246,7 @@ impl DataPolygon {
     }
 }
 
-fn check_points(points: &[DVec3], boundary: Boundary) -> Result<(), InputError> {
+fn check_ends(points: &[DVec3], boundary: Boundary) -> Result<(), InputError> {
     let (needed, why) = match boundary {
         Boundary::Periodic => (3, " for boundary \"periodic\""),
         Boundary::Circular => (3, " for boundary \"circular\""),
@@ -256,36 +256,51 @@ fn check_points(points: &[DVec3], boundary: Boundary) -> Result<(), InputError> 
         let found = points.len();
         return Err(InputError::TooFewPoints { argument: "points", needed, found, why });
     }
-    for (index, p) in points.iter().enumerate() {
-        if !p.is_finite() {
-            let value = p.to_array().into_iter().find(|x| !x.is_finite()).unwrap_or(f64::NAN);
-            return Err(InputError::NotFinite { argument: "points", index, value });
-        }
-    }
     let (start, end) = (points[0], points[points.len() - 1]);
-    if boundary == Boundary::Periodic && start != end {
+    // Points that are not numbers are told of by `check_chords`.
+    if boundary == Boundary::Periodic && start != end && start.is_finite() && end.is_finite() {
         return Err(InputError::NotClosed { last: points.len() - 1, start, end });
     }
     Ok(())
 }
 
-/// Neighbours must differ, and by no more than f64 holds.
-fn check_chords(points: &[DVec3]) -> Result<(), InputError> {
+/// Points must be finite, and neighbours differ, by no more than f64 holds. Returns the largest
+/// component of a chord.
+fn check_chords(points: &[DVec3]) -> Result<f64, InputError> {
+    let mut longest = 0.0f64;
     for (i, pair) in points.windows(2).enumerate() {
-        if pair[0] == pair[1] {
-            return Err(InputError::RepeatedPoint { index: i + 1, value: pair[1] });
-        }
         let chord = pair[1] - pair[0];
-        if !chord.is_finite() {
-            let value = crate::length(chord);
-            return Err(InputError::Overflow { index: i, what: "the chord", value });
+        let size = chord.abs().max_element();
+        // A chord of numbers has two ends of numbers.
+        if !chord.is_finite() || size == 0.0 {
+            return Err(bad_chord(points, i));
+        }
+        longest = longest.max(size);
+    }
+    Ok(longest)
+}
+
+/// What is wrong with chord `i`, the first that is not a positive number.
+fn bad_chord(points: &[DVec3], i: usize) -> InputError {
+    for index in [i, i + 1] {
+        let value = points[index].to_array().into_iter().find(|x| !x.is_finite());
+        if let Some(value) = value {
+            return InputError::NotFinite { argument: "points", index, value };
         }
     }
-    Ok(())
+    let chord = points[i + 1] - points[i];
+    if chord == DVec3::ZERO {
+        return InputError::RepeatedPoint { index: i + 1, value: points[i + 1] };
+    }
+    InputError::Overflow { index: i, what: "the chord", value: crate::length(chord) }
 }
 
 /// A chord over its spacing is the size of a tangent: if that overflows, so would every answer.
-fn check_velocities(points: &[DVec3], parameters: &[f64]) -> Result<(), InputError> {
+fn check_velocities(points: &[DVec3], parameters: &[f64], longest: f64) -> Result<(), InputError> {
+    let shortest = parameters.windows(2).map(|u| u[1] - u[0]).fold(f64::INFINITY, f64::min);
+    if (longest * 6.0 / shortest).is_finite() {
+        return Ok(());
+    }
     for (i, (p, u)) in points.windows(2).zip(parameters.windows(2)).enumerate() {
         let speed = (p[1] - p[0]).abs().max_element() * 6.0 / (u[1] - u[0]);
         if !speed.is_finite() {

@@ -15,7 +15,7 @@ use crate::{
     error::{convergence_error, fit_error},
     input::Points,
     options::{CriteriaNames, Ends, Parameters, tolerances},
-    report::ShapeReport,
+    report::{ShapeReport, Subject},
     work::{Monitor, detached, interruptible},
 };
 
@@ -123,7 +123,8 @@ pub(crate) fn finish<C: Member>(
     );
     let curve: Arc<dyn Curve> = Arc::clone(&base.curve);
     let report = curve.with_locations(report);
-    let report = ShapeReport::of(report, curve, failure.criteria, failure.tolerances);
+    let subject = Subject::Own(curve);
+    let report = ShapeReport::of(report, subject, failure.criteria, failure.tolerances);
     let report = Py::new(py, report)?.into_any();
     Err(convergence_error(py, message, base.into_python(py)?, report))
 }

@@ -77,6 +77,23 @@ fn in_c_order<'py>(array: &Bound<'py, PyArrayDyn<f64>>) -> Option<Array<'py>> {
     array.as_slice().is_ok().then_some(Array(array))
 }
 
+/// Sees to it that an array holds neither NaN nor infinity.
+///
+/// # Errors
+/// `ValueError` with the full index of the first such value.
+pub(crate) fn finite(argument: &str, array: &Array<'_>) -> PyResult<()> {
+    let Some(mut flat) = array.values().iter().position(|x| !x.is_finite()) else { return Ok(()) };
+    let value = array.values()[flat];
+    let mut index: Vec<String> = Vec::new();
+    for &length in array.shape().iter().rev() {
+        index.push((flat % length).to_string());
+        flat /= length;
+    }
+    index.reverse();
+    let index = index.join(", ");
+    Err(PyValueError::new_err(format!("{argument}[{index}] must be finite, got {value}")))
+}
+
 /// Points: `(n, 2)` or `(n, 3)`.
 pub(crate) struct Points {
     pub(crate) points: Vec<DVec3>,

@@ -21,7 +21,9 @@ mod nu;
 mod options;
 mod output;
 mod pickle;
+mod piecewise;
 mod report;
+mod shape;
 mod tangents;
 mod tension;
 mod work;
@@ -32,7 +34,7 @@ mod work;
 #[global_allocator]
 static ALLOCATOR: MiMalloc = MiMalloc;
 
-/// Compiled part of shapespline: the curves and their reports.
+/// Compiled part of shapespline: the curves, their reports, and checks of any curve.
 #[pymodule(gil_used = false)]
 fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<curve::SpaceCurve>()?;
@@ -40,6 +42,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<tension::TensionSpline>()?;
     module.add_class::<catmull_rom::CatmullRom>()?;
     module.add_class::<tangents::Tangents>()?;
+    module.add_class::<piecewise::PiecewiseBezier>()?;
     module.add_class::<report::ShapeReport>()?;
     module.add_class::<report::ShapeRecord>()?;
     module.add_class::<diagnostics::Diagnostics>()?;
@@ -47,6 +50,13 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(pickle::_curve_from_bytes, module)?)?;
     module.add_function(wrap_pyfunction!(pickle::_report_from_bytes, module)?)?;
     module.add_function(wrap_pyfunction!(many::_fit_many, module)?)?;
+    module.add_function(wrap_pyfunction!(pickle::_piecewise_from_bytes, module)?)?;
+    module.add_function(wrap_pyfunction!(shape::_check_shape, module)?)?;
+    module.add_function(wrap_pyfunction!(shape::_curve_inflections, module)?)?;
+    module.add_function(wrap_pyfunction!(shape::_polygon_inflections, module)?)?;
+    module.add_function(wrap_pyfunction!(shape::_polygon_shape, module)?)?;
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
-    curve::document_call(module.py())
+    let py = module.py();
+    curve::document_call(&py.get_type::<curve::SpaceCurve>())?;
+    curve::document_call(&py.get_type::<piecewise::PiecewiseBezier>())
 }

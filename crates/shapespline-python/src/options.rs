@@ -103,6 +103,9 @@ pub(crate) fn nu(object: &Bound<'_, PyAny>) -> PyResult<usize> {
 pub(crate) fn n(object: &Bound<'_, PyAny>) -> PyResult<usize> {
     count("n", 1, object)
 }
+pub(crate) fn degree(object: &Bound<'_, PyAny>) -> PyResult<usize> {
+    count("degree", 1, object)
+}
 pub(crate) fn max_iterations(object: &Bound<'_, PyAny>) -> PyResult<Option<usize>> {
     if object.is_none() { Ok(None) } else { count("max_iterations", 1, object).map(Some) }
 }
@@ -260,7 +263,7 @@ impl<'py> FromPyObject<'_, 'py> for Ends {
     }
 }
 
-/// `criteria`: `None` for all, a name, or any iterable of names.
+/// `criteria`: `None` for the default, a name, or any iterable of names.
 pub(crate) struct CriteriaNames(pub(crate) Criteria);
 
 impl CriteriaNames {
@@ -270,8 +273,7 @@ impl CriteriaNames {
         Criterion::from_name(name).ok_or_else(|| {
             let names: Vec<String> =
                 Criterion::ALL.iter().map(|c| format!("'{}'", c.name())).collect();
-            let names = names.join(", ");
-            unknown("criteria", name, &names)
+            unknown("criteria", name, &names.join(", "))
         })
     }
 }

@@ -27,18 +27,17 @@ const SWEEPS: usize = 256;
 pub(crate) fn relax<F: TensionFamily>(state: &mut State<'_, '_, F>) -> Result<(), F::Error> {
     for sweep in 0..SWEEPS {
         let all = runs(state.family.tension(), state.closed());
-        let mut open: Vec<bool> = match sweep {
-            0 => vec![true; all.len()],
+        let open = match sweep {
+            0 => (0..all.len()).collect(),
             _ => lowerable(state, &all)?,
         };
         let mut changed = 0;
-        while open.contains(&true) && !state.stopped {
-            let batch = dominant(state, &all, &open);
-            for group in &batch {
-                group.iter().for_each(|&r| open[r] = false);
-            }
+        for batch in batches(state, &all, open) {
             changed += lower(state, &all, &batch)?;
             state.relaxations += 1;
+            if state.wants_to_stop(Phase::Relax, changed) {
+                break;
+            }
         }
         state.log(Phase::Relax, 0, changed);
         if changed == 0 || state.stopped {
@@ -61,19 +60,48 @@ fn gap<F: TensionFamily>(state: &State<'_, '_, F>, a: &Run, b: &Run) -> usize {
     }
 }
 
-/// The open runs that no open run within reach outweighs, in groups: ties within reach of each other
-/// are one group.
-fn dominant<F: TensionFamily>(
+/// The open runs in the order in which they are lowered: a run comes in the first batch in which every
+/// run within reach that outweighs it has had its turn.
+///
+/// The cost follows the number of runs, however long a chain of ever smaller runs may be.
+fn batches<F: TensionFamily>(
     state: &State<'_, '_, F>,
     all: &[Run],
-    open: &[bool],
+    open: Vec<usize>,
+) -> Vec<Vec<Vec<usize>>> {
+    const CLOSED: usize = usize::MAX;
+    const WAITING: usize = usize::MAX - 1;
+    let mut turn = vec![CLOSED; all.len()];
+    open.iter().for_each(|&r| turn[r] = WAITING);
+    let mut heaviest_first = open;
+    heaviest_first.sort_by(|&a, &b| all[b].total.total_cmp(&all[a].total));
+    let mut batches: Vec<Vec<usize>> = Vec::new();
+    for &r in &heaviest_first {
+        let after = neighbours(state, all, r)
+            .filter(|&o| turn[o] < WAITING && all[o].outweighs(&all[r]))
+            .map(|o| turn[o] + 1);
+        turn[r] = after.max().unwrap_or(0);
+        if turn[r] == batches.len() {
+            batches.push(Vec::new());
+        }
+        batches[turn[r]].push(r);
+    }
+    let ordered = |mut batch: Vec<usize>| {
+        batch.sort_unstable();
+        groups(state, all, batch)
+    };
+    batches.into_iter().map(ordered).collect()
+}
+
+/// The runs of a batch (ascending) in groups: within reach of each other are only ties, and ties are
+/// one group.
+fn groups<F: TensionFamily>(
+    state: &State<'_, '_, F>,
+    all: &[Run],
+    batch: Vec<usize>,
 ) -> Vec<Vec<usize>> {
-    let near = |r: usize| neighbours(state, all, r);
-    let chosen: Vec<usize> = (0..all.len())
-        .filter(|&r| open[r] && !near(r).any(|o| open[o] && all[o].outweighs(&all[r])))
-        .collect();
     let mut groups: Vec<Vec<usize>> = Vec::new();
-    for r in chosen {
+    for r in batch {
         match groups.last_mut() {
             Some(group) if gap(state, &all[group[group.len() - 1]], &all[r]) <= REACH => {
                 group.push(r);
@@ -165,12 +193,12 @@ fn lower<F: TensionFamily>(
     Ok(groups.iter().filter(|g| g.keeps < 1.0).map(|g| g.nodes.len()).sum())
 }
 
-/// Which runs could be lowered by the resolution, each for itself and all others left as they are.
+/// The runs that could be lowered by the resolution, each for itself and all others left as they are.
 fn lowerable<F: TensionFamily>(
     state: &mut State<'_, '_, F>,
     all: &[Run],
-) -> Result<Vec<bool>, F::Error> {
-    let mut found = vec![false; all.len()];
+) -> Result<Vec<usize>, F::Error> {
+    let mut found = Vec::new();
     let mut waiting: Vec<usize> = (0..all.len()).collect();
     while !waiting.is_empty() {
         // Runs out of each other's reach share a solve; the tests are independent, so the order in
@@ -186,9 +214,8 @@ fn lowerable<F: TensionFamily>(
         });
         let groups = bisections(state, all, &batch);
         try_all(state, &groups, |_| 1.0 - RESOLUTION)?;
-        for (group, failed) in batch.iter().zip(failures(state, &groups)) {
-            found[group[0]] = !failed;
-        }
+        let failed = failures(state, &groups);
+        found.extend(batch.iter().zip(failed).filter(|(_, failed)| !failed).map(|(g, _)| g[0]));
         try_all(state, &groups, |_| 1.0)?;
     }
     Ok(found)

@@ -222,6 +222,12 @@ impl<'s, 'p, F: TensionFamily> State<'s, 'p, F> {
         self.history.push(step);
     }
 
+    /// Shows the monitor a step that is still under way; whether it asks to stop.
+    pub(crate) fn wants_to_stop(&mut self, phase: Phase, changed: usize) -> bool {
+        self.stopped |= (self.monitor)(&Step { phase, violated: 0, changed }).is_break();
+        self.stopped
+    }
+
     fn outcome(self, status: Status) -> Outcome {
         let diagnostics = Diagnostics {
             status,

@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use rayon::prelude::*;
 use shapespline_banded::{Resolvable, Rows, SolveError, solve_once};
 use shapespline_geometry::{DVec3, DataPolygon};
 
@@ -39,7 +40,17 @@ pub trait TensionSystem: Rows + Sync {
 /// A system that f64 cannot hold.
 pub fn solve_legs<S: TensionSystem>(system: &S) -> Result<Vec<[DVec3; 2]>, SolveError> {
     let tangents = solve_once(system)?;
-    Ok((0..system.polygon().segments()).map(|i| legs_of(system, &tangents, i)).collect())
+    Ok(collect(system.polygon().segments(), |i| legs_of(system, &tangents, i)))
+}
+
+/// `make(0), …, make(count − 1)`, on all threads where there are many.
+fn collect<T: Send>(count: usize, make: impl Fn(usize) -> T + Sync + Send) -> Vec<T> {
+    const MANY: usize = 16_384;
+    if count < 2 * MANY {
+        (0..count).map(make).collect()
+    } else {
+        (0..count).into_par_iter().with_min_len(MANY).map(make).collect()
+    }
 }
 
 #[inline]
@@ -73,7 +84,7 @@ impl<S: TensionSystem> SolvedFamily<S> {
     /// End legs of every segment, and the system.
     pub fn finish(self) -> (Vec<[DVec3; 2]>, S) {
         let segments = self.system.polygon().segments();
-        ((0..segments).map(|i| self.end_legs(i)).collect(), self.system)
+        (collect(segments, |i| self.end_legs(i)), self.system)
     }
 
     /// Segments that end or begin at some of the nodes.

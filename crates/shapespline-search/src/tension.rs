@@ -41,8 +41,8 @@ impl Tension<'_> {
                     return wrong(index, allowed);
                 }
                 if polygon.is_closed() && values[expected - 1] != values[0] {
-                    let allowed = "equal to the first for boundary \"periodic\"";
-                    return wrong(expected - 1, allowed);
+                    let (last, start, end) = (expected - 1, values[0], values[expected - 1]);
+                    return Err(InputError::Unequal { argument, last, start, end });
                 }
                 Ok(values[..polygon.nodes()].to_vec())
             }

@@ -44,6 +44,16 @@ fn main() -> Result<(), Box<dyn Error>> {
     let options = HandleOptions::default();
     let kept = best(n, || CatmullRom::shape_preserving(polygon.clone(), &options)) - copy;
     println!("{:<44}{kept:>8.1}", "Catmull–Rom, shape-preserving");
+    let search = SearchOptions::default();
+    let calls = best(n, || search.checker(&polygon).map(|_| ()));
+    println!("{:<44}{calls:>8.1}", "  of it: what the polygon calls for");
+    let checker = search.checker(&polygon)?;
+    let curve = CatmullRom::shape_preserving(polygon.clone(), &options)?.curve;
+    let legs = curve.curve().legs();
+    let check = best(n, || checker.all_faults(|i| legs[i]));
+    println!("{:<44}{check:>8.1}", "  of it: the check");
+    let report = best(n, || checker.report_of(&[], |i| legs[i]));
+    println!("{:<44}{report:>8.1}", "  of it: the report's counts");
     let whole = best(n, || CatmullRom::shape_preserving(make().ok()?, &options).ok());
     println!("{:<44}{whole:>8.1}", "  from the points on");
 
@@ -82,7 +92,6 @@ fn main() -> Result<(), Box<dyn Error>> {
         parametrization: Parametrization::Centripetal,
         boundary: Boundary::ZeroCurvature,
     };
-    let search = SearchOptions::default();
     let tension = TensionSpline::options();
     let many = [
         best(300, || fit_many(&rows, None, |p| NuSpline::shape_preserving(p, &search))),

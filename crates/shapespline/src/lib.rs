@@ -8,6 +8,7 @@
 //! | [`banded`] | tridiagonal and cyclic solvers |
 //! | [`criteria`] | the shape criteria, decided exactly, and their report |
 //! | [`search`] | automatic tension: raise where a criterion fails, then relax |
+//! | [`monotone`] | functions of one variable: Bézier-like curves, C¹ monotone quartic, C² monotone quintic |
 //! | [`nu`] | ν-splines: G², one linear system |
 //! | [`tension`] | C² tension cubics: C² in a parameter of their own, one linear system |
 //! | [`catmull_rom`] | Catmull–Rom: C¹ or G¹, local, shape-preserving in closed form |
@@ -42,6 +43,7 @@ pub use shapespline_banded as banded;
 pub use shapespline_catmull_rom as catmull_rom;
 pub use shapespline_criteria as criteria;
 pub use shapespline_geometry as geometry;
+pub use shapespline_monotone as monotone;
 pub use shapespline_nu as nu;
 pub use shapespline_search as search;
 pub use shapespline_tension as tension;
@@ -53,6 +55,9 @@ pub mod prelude {
     pub use shapespline_geometry::{
         ArcLength, Boundary, Curve, DVec3, DataPolygon, Dimension, Parametrization, PiecewiseCubic,
         Ragged, Side,
+    };
+    pub use shapespline_monotone::{
+        MonotoneQuartic, MonotoneQuintic, QuarticOptions, QuinticOptions,
     };
     pub use shapespline_nu::NuSpline;
     pub use shapespline_search::{

@@ -2,7 +2,7 @@
 
 use numpy::PyArray1;
 use pyo3::prelude::*;
-use shapespline::{criteria::Checker, geometry::Boundary};
+use shapespline::geometry::{Boundary, Dimension};
 
 use super::SpaceCurve;
 use crate::{
@@ -10,9 +10,8 @@ use crate::{
     error::input_error,
     options::{self, CriteriaNames, tolerances},
     output::{FloatArray, vectors},
-    report::ShapeReport,
+    report::{ShapeReport, Subject},
     tangents::Tangents,
-    work::detached,
 };
 
 /// The name of a boundary that has one.
@@ -22,6 +21,20 @@ pub(super) fn boundary_name(boundary: Boundary) -> Option<&'static str> {
         Boundary::Periodic => Some("periodic"),
         Boundary::Circular => Some("circular"),
         Boundary::Tangents { .. } => None,
+    }
+}
+
+/// A boundary as Python writes it: its name, or a `Tangents`.
+pub(crate) fn boundary_object(
+    py: Python<'_>,
+    boundary: Boundary,
+    dimension: Dimension,
+) -> PyResult<Bound<'_, PyAny>> {
+    match boundary {
+        Boundary::Tangents { start, end } => {
+            Ok(Bound::new(py, Tangents::new(start, end, dimension))?.into_any())
+        }
+        named => Ok(boundary_name(named).unwrap_or_default().into_pyobject(py)?.into_any()),
     }
 }
 
@@ -92,13 +105,7 @@ impl SpaceCurve {
     /// 'zero-curvature'
     #[getter]
     fn boundary<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        match self.curve.boundary() {
-            Boundary::Tangents { start, end } => {
-                let tangents = Tangents::new(start, end, self.curve.cubic().dimension());
-                Ok(Bound::new(py, tangents)?.into_any())
-            }
-            named => Ok(boundary_name(named).unwrap_or_default().into_pyobject(py)?.into_any()),
-        }
+        boundary_object(py, self.curve.boundary(), self.curve.cubic().dimension())
     }
 
     /// What the search for tension took, a `Diagnostics`; ``None`` for a curve of given tension.
@@ -141,8 +148,8 @@ impl SpaceCurve {
     /// Parameters
     /// ----------
     /// criteria : str or iterable of str, optional
-    ///     Any of ``"convexity"``, ``"inflection"``, ``"torsion"``, ``"coplanarity"`` and
-    ///     ``"collinearity"``; default all of them.
+    ///     Any of ``"convexity"``, ``"inflection"``, ``"torsion"``, ``"coplanarity"``,
+    ///     ``"collinearity"`` and ``"global-convexity"``; default all but the last.
     /// coplanarity, collinearity : float
     ///     ε₁ and ε₀ in (0, 1]: sine of the largest angle between binormal and plane normal where four
     ///     points lie in a plane, and between tangent and line where three lie on a line.
@@ -186,15 +193,7 @@ impl SpaceCurve {
         #[pyo3(from_py_with = options::collinearity)] collinearity: f64,
         #[pyo3(from_py_with = options::tolerance)] tolerance: f64,
     ) -> PyResult<ShapeReport> {
-        let criteria = criteria.0;
         let tolerances = tolerances(coplanarity, collinearity, tolerance)?;
-        let cubic = self.curve.cubic();
-        let report = detached(py, cubic.segments(), || {
-            let polygon = self.curve.polygon()?;
-            let checker = Checker::new(&polygon, criteria, tolerances);
-            Ok(self.curve.with_locations(checker.report(|i| cubic.legs()[i])))
-        })
-        .map_err(input_error)?;
-        Ok(ShapeReport::of(report, self.curve.clone(), criteria, tolerances))
+        ShapeReport::make(py, Subject::Own(self.curve.clone()), criteria.0, tolerances)
     }
 }

@@ -6,7 +6,12 @@
 
 use std::{any::Any, fmt::Debug, sync::Arc};
 
-use pyo3::{PyClass, PyClassInitializer, exceptions::PyTypeError, prelude::*, types::PyBytes};
+use pyo3::{
+    PyClass, PyClassInitializer,
+    exceptions::PyTypeError,
+    prelude::*,
+    types::{PyBytes, PyType},
+};
 use shapespline::{
     catmull_rom::CatmullRom,
     criteria::{Record, ShapeReport},
@@ -22,6 +27,8 @@ mod attributes;
 mod evaluate;
 mod export;
 mod measure;
+
+pub(crate) use attributes::boundary_object;
 
 /// The families, by the numbers that pickles hold: append only.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
@@ -117,7 +124,7 @@ impl<C: Member> Curve for C {
     }
 }
 
-impl dyn Curve {
+impl dyn Curve + '_ {
     /// A record with its location in the curve's own parameter: the checker sees the image alone,
     /// run through linearly on each segment.
     pub(crate) fn located(&self, record: Record) -> Record {
@@ -252,8 +259,7 @@ fn short(x: f64) -> String {
 ///
 /// pyo3 puts `__call__` into a slot, and Python shows every slot as `(*args, **kwargs)` without a
 /// word: the most used method would be the only one without help.
-pub(crate) fn document_call(py: Python<'_>) -> PyResult<()> {
-    let class = py.get_type::<SpaceCurve>();
+pub(crate) fn document_call(class: &Bound<'_, PyType>) -> PyResult<()> {
     class.setattr("__call__", class.getattr("_call")?)?;
     class.delattr("_call")
 }

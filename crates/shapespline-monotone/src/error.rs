@@ -1,0 +1,114 @@
+//! What cannot be fitted or asked: every variant names the argument, the place and the value.
+
+use thiserror::Error;
+
+/// Unusable input. Results that merely disappoint are reported in [`crate::Diagnostics`] instead.
+#[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
+pub enum MonotoneError {
+    /// A NaN or an infinity in the data or options.
+    #[error("{argument}[{index}] is {value}; every entry must be finite")]
+    NotFinite {
+        /// The argument.
+        argument: &'static str,
+        /// The entry.
+        index: usize,
+        /// Its value.
+        value: f64,
+    },
+    /// Abscissae that do not increase.
+    #[error(
+        "x[{index}] = {value} does not exceed its predecessor {previous}; x must be strictly increasing"
+    )]
+    NotIncreasing {
+        /// The entry.
+        index: usize,
+        /// Its value.
+        value: f64,
+        /// The entry before it.
+        previous: f64,
+    },
+    /// Too few points.
+    #[error("{argument} has {found} entries; at least {needed} are needed")]
+    TooFew {
+        /// The argument.
+        argument: &'static str,
+        /// Entries given.
+        found: usize,
+        /// Entries needed.
+        needed: usize,
+    },
+    /// Lengths that do not agree.
+    #[error("{argument} has {found} entries; expected {expected}")]
+    Length {
+        /// The argument.
+        argument: &'static str,
+        /// Entries given.
+        found: usize,
+        /// Entries expected.
+        expected: usize,
+    },
+    /// A difference, slope or curvature of the data that does not fit in double precision.
+    #[error(
+        "the {quantity} at {argument}[{index}] = {value} is out of the range of double precision; rescale the data"
+    )]
+    OutOfRange {
+        /// What overflows: "spread", "secant slope" or "second derivative".
+        quantity: &'static str,
+        /// The argument.
+        argument: &'static str,
+        /// The entry.
+        index: usize,
+        /// Its value.
+        value: f64,
+    },
+    /// A negative shape parameter.
+    #[error("{argument}[{index}] = {value}; shape parameters must be finite and not negative")]
+    Shape {
+        /// The argument.
+        argument: &'static str,
+        /// The entry (0 for a scalar).
+        index: usize,
+        /// Its value.
+        value: f64,
+    },
+    /// An option that does not exist, or not for this interpolant.
+    #[error("unknown {argument} {value:?}; expected one of {expected}")]
+    UnknownOption {
+        /// The argument.
+        argument: &'static str,
+        /// What was given.
+        value: String,
+        /// What is allowed.
+        expected: &'static str,
+    },
+    /// `inverse` of a function that is not strictly monotone.
+    #[error("inverse needs strictly monotone data: y[{index}] = {value} breaks it")]
+    NotInvertible {
+        /// The entry of y.
+        index: usize,
+        /// Its value.
+        value: f64,
+    },
+    /// Something wrong in one row or column of many.
+    #[error("row {row}: {source}")]
+    InRow {
+        /// The row or column.
+        row: usize,
+        /// What is wrong in it.
+        source: Box<MonotoneError>,
+    },
+    /// Offsets that do not cut the data.
+    #[error("offsets[{index}] = {value}; offsets must start at 0, not fall, and end at {length}")]
+    Offset {
+        /// The entry.
+        index: usize,
+        /// Its value.
+        value: usize,
+        /// The length of what is cut.
+        length: usize,
+    },
+    /// The interior solver failed; cannot happen for data this crate accepted.
+    #[error("box program: {0}")]
+    Program(#[from] shapespline_banded::box_qp::BoxQpError),
+}

@@ -1,0 +1,72 @@
+//! Monotone interpolation of one variable: C¹ quartic and C² quintic Bézier-like splines, and the fairest of them.
+//!
+//! # Definition
+//! Data `(xᵢ, yᵢ)`, i = 0 … N, x increasing; spacing `hᵢ = xᵢ₊₁ − xᵢ`, secant `Δᵢ = (yᵢ₊₁ − yᵢ)/hᵢ`.
+//! - [`MonotoneQuartic`]: C¹, local. On every segment the quartic Bézier-like curve (3) of the paper.
+//! - [`MonotoneQuintic`]: C², global. On every segment a quintic; slopes and second derivatives at the knots are
+//!   chosen so that a bending energy is least.
+//! - [`bezier_like`]: the curves themselves, in any dimension.
+//!
+//! # Guarantee
+//! Every segment is monotone: increasing where its data increase, decreasing where they decrease, constant where
+//! they are. So the interpolant is monotone on every interval where the data are, has no extremum that the data do
+//! not have and never leaves the interval between neighbouring values. Signs are decided by Bernstein coefficients
+//! and their subdivision, never by sampling. Results scale with the data (powers of two exactly) and reflect with
+//! them.
+//!
+//! # Sources
+//! Paper 003: Ng, Kong and Ong, *A class of Bézier-like splines in smooth monotone interpolation*; equation numbers
+//! in this crate are its. Corrections E11 (`p = a/2, q = g/2`), E12 (a missing factor in (8)) and E13 (the chain that
+//! bounds λ) and the box form of the program are those of the project's specification. Slopes: Fritsch and Butland,
+//! *SIAM J. Sci. Stat. Comput.* 5 (1984) 300–304.
+//!
+//! ```
+//! use shapespline_monotone::{MonotoneQuintic, QuinticOptions};
+//! let f = MonotoneQuintic::new(&[0.0, 1.0, 2.0, 5.0], &[0.0, 0.1, 3.0, 3.2], &QuinticOptions::default())?;
+//! assert_eq!(f.value(2.0), 3.0);
+//! let x = f.inverse(1.5)?;
+//! assert!((f.value(x) - 1.5).abs() < 1e-15);
+//! # Ok::<(), shapespline_monotone::MonotoneError>(())
+//! ```
+
+// Negated comparisons are meant: they catch NaN as well. Index loops follow the formulas, over several arrays at once.
+#![allow(clippy::neg_cmp_op_on_partial_ord, clippy::needless_range_loop)]
+
+mod bernstein;
+pub mod bezier_like;
+mod data;
+mod energy;
+mod error;
+mod extrapolation;
+mod inverse;
+mod locate;
+mod many;
+mod optimal;
+mod piecewise;
+mod program;
+mod quartic;
+mod quartic_form;
+mod quintic;
+mod record;
+#[cfg(test)]
+mod reference;
+#[cfg(feature = "nlopt")]
+pub mod second_opinion;
+mod slopes;
+mod spline;
+mod subdivision;
+mod windows;
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct ReadmeDoctests;
+
+pub use bezier_like::BezierLike;
+pub use energy::Fairness;
+pub use error::MonotoneError;
+pub use extrapolation::Extrapolation;
+pub use many::{MonotoneMany, fit_columns, fit_rows};
+pub use piecewise::PiecewisePolynomial;
+pub use quartic::{MonotoneQuartic, QuarticOptions, Shape};
+pub use quintic::{Diagnostics, MonotoneQuintic, QuinticOptions, Slopes, Solver};
+pub use spline::MonotoneSpline;

@@ -1,0 +1,304 @@
+//! The C¹ local monotone quartic of the paper: equation (15), conditions (12), (13), theorem 1 and the four cases.
+
+use crate::MonotoneError;
+use crate::Slopes;
+use crate::data::{Data, check_finite};
+use crate::extrapolation::Extrapolation;
+use crate::slopes;
+use crate::spline::{Kind, MonotoneSpline};
+use serde::{Deserialize, Serialize};
+use std::ops::Deref;
+
+/// λ is lowered by this much below the largest admissible one, so that the derivative stays strictly non-negative
+/// after rounding.
+const INSIDE: f64 = 1.0 - 1e-12;
+
+/// Starting values of the shape parameters, non-negative.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub enum Shape {
+    /// α = β everywhere; the paper takes 3.
+    Uniform(f64),
+    /// One pair a segment.
+    Segments {
+        /// α of every segment.
+        alpha: Vec<f64>,
+        /// β of every segment.
+        beta: Vec<f64>,
+    },
+}
+
+impl Shape {
+    /// (α, β) of segment i.
+    #[inline]
+    fn at(&self, i: usize) -> (f64, f64) {
+        match self {
+            Self::Uniform(a) => (*a, *a),
+            // Lengths are checked when fitting; damaged stored data must not panic.
+            Self::Segments { alpha, beta } => {
+                let entry = |v: &[f64]| v.get(i).copied().unwrap_or(f64::NAN);
+                (entry(alpha), entry(beta))
+            }
+        }
+    }
+}
+
+impl Default for Shape {
+    fn default() -> Self {
+        Self::Uniform(3.0)
+    }
+}
+
+/// How a [`MonotoneQuartic`] is made.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct QuarticOptions {
+    /// Nodal slopes. [`Slopes::Optimal`] does not exist for the quartic.
+    pub slopes: Slopes,
+    /// Starting values of α and β.
+    pub shape: Shape,
+    /// What it is outside the data.
+    pub extrapolate: Extrapolation,
+}
+
+/// The C¹ monotone quartic Bézier-like spline (paper 003, equation (15)).
+///
+/// On every segment the curve (3) with `mᵢ = hᵢdᵢ`; α, β start from [`QuarticOptions::shape`] and are scaled by the
+/// largest λ ∈ [0, 1] that leaves the derivative non-negative. Local: a point moves at most four segments. Monotone
+/// on every interval where the data are, flat where they are flat; decreasing data give the reflected curve. O(N).
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct MonotoneQuartic {
+    spline: MonotoneSpline,
+    shape: Shape,
+    scale: Vec<f64>,
+}
+
+impl Deref for MonotoneQuartic {
+    type Target = MonotoneSpline;
+    fn deref(&self) -> &MonotoneSpline {
+        &self.spline
+    }
+}
+
+impl MonotoneQuartic {
+    /// Interpolate `y` at the increasing `x`.
+    ///
+    /// # Errors
+    /// [`MonotoneError`] naming argument, index and value: fewer than two points, lengths that differ, NaN or
+    /// infinity, x not increasing, spreads or secants that overflow, a negative shape parameter.
+    pub fn new(x: &[f64], y: &[f64], options: &QuarticOptions) -> Result<Self, MonotoneError> {
+        let data = Data::new(x, y)?;
+        let n = data.len();
+        let d = match &options.slopes {
+            Slopes::FritschButland => slopes::fritsch_butland(&data),
+            Slopes::Given(given) => {
+                check_length("slopes", given, n + 1)?;
+                check_finite("slopes", given)?;
+                slopes::limited(&data, given)
+            }
+            Slopes::Optimal => {
+                return Err(MonotoneError::UnknownOption {
+                    argument: "slopes",
+                    value: "optimal".to_owned(),
+                    expected: "fritsch-butland, an array of slopes",
+                });
+            }
+        };
+        match &options.shape {
+            Shape::Uniform(a) => check_shape("shape", &[*a])?,
+            Shape::Segments { alpha, beta } => {
+                for (argument, values) in [("alpha", alpha), ("beta", beta)] {
+                    check_length(argument, values, n)?;
+                    check_shape(argument, values)?;
+                }
+            }
+        }
+        let mut scale = Vec::with_capacity(n);
+        let mut e = Vec::with_capacity(n);
+        for i in 0..n {
+            let delta = data.delta[i];
+            if delta == 0.0 {
+                e.push(0.0);
+                scale.push(1.0);
+                continue;
+            }
+            let (alpha, beta) = options.shape.at(i);
+            // In units of the secant everything is of order one.
+            let inverse = 1.0 / delta;
+            let exact = inverse.is_finite() && inverse != 0.0;
+            let over = |d: f64| if exact { d * inverse } else { d / delta };
+            let (m0, m1) = (over(d[i]), over(d[i + 1]));
+            let full = 2.0 / 3.0 * (alpha * m0 - beta * m1);
+            let lambda = largest_scale(m0, m1, full);
+            scale.push(lambda);
+            e.push(lambda * full * (delta * data.h[i]));
+        }
+        let spline =
+            MonotoneSpline::quartic(&data, x.to_vec(), y.to_vec(), &d, e, options.extrapolate);
+        if let Some(i) = spline.d.iter().position(|d| !d.is_finite()) {
+            return Err(crate::data::out_of_range("secant slope", "y", i, y[i]));
+        }
+        Ok(Self { spline, shape: options.shape.clone(), scale })
+    }
+
+    /// α of every segment, after scaling.
+    #[must_use]
+    pub fn alpha(&self) -> Vec<f64> {
+        self.scale.iter().enumerate().map(|(i, l)| l * self.shape.at(i).0).collect()
+    }
+
+    /// β of every segment, after scaling.
+    #[must_use]
+    pub fn beta(&self) -> Vec<f64> {
+        self.scale.iter().enumerate().map(|(i, l)| l * self.shape.at(i).1).collect()
+    }
+
+    /// λ of every segment: 1 where the starting values were kept.
+    #[must_use]
+    pub fn scale(&self) -> &[f64] {
+        &self.scale
+    }
+
+    /// The interpolant without its shape parameters.
+    #[must_use]
+    pub fn spline(&self) -> &MonotoneSpline {
+        &self.spline
+    }
+
+    /// `∫ f''² dx`; +∞ if it overflows. O(N).
+    #[must_use]
+    pub fn bending_energy(&self) -> f64 {
+        let Kind::Quartic { e } = &self.spline.kind else { return f64::NAN };
+        let (x, y, d) = (self.x(), self.y(), self.slopes());
+        let mut sum = 0.0;
+        for (i, e) in e.iter().enumerate() {
+            let h = x[i + 1] - x[i];
+            let (m0, m1, dy) = (h * d[i], h * d[i + 1], y[i + 1] - y[i]);
+            // Second derivative's Bernstein coefficients 3(B−A), 3(C−B), 3(D−C), over h².
+            let a = 3.0 * (2.0 * (dy - m0) + e);
+            let b = 3.0 * (m0 - m1 - 2.0 * e);
+            let c = 3.0 * (2.0 * (m1 - dy) + e);
+            let mean =
+                (6.0 * (a * a + c * c) + 6.0 * b * (a + c) + 2.0 * a * c + 4.0 * b * b) / 30.0;
+            sum += mean / h / h / h;
+        }
+        sum
+    }
+}
+
+fn check_length(
+    argument: &'static str,
+    values: &[f64],
+    expected: usize,
+) -> Result<(), MonotoneError> {
+    if values.len() == expected {
+        Ok(())
+    } else {
+        Err(MonotoneError::Length { argument, found: values.len(), expected })
+    }
+}
+
+fn check_shape(argument: &'static str, values: &[f64]) -> Result<(), MonotoneError> {
+    match values.iter().position(|v| !(*v >= 0.0 && v.is_finite())) {
+        Some(index) => Err(MonotoneError::Shape { argument, index, value: values[index] }),
+        None => Ok(()),
+    }
+}
+
+/// The largest λ ∈ [0, 1] for which the derivative (4) with `e = λ full` is non-negative on [0, 1]; `a`, `d` are
+/// the end slopes over the secant, in [0, 2].
+///
+/// The admissible e form an interval around 0 (non-negativity is an intersection of half-planes), so the boundary in
+/// one direction is a single point. It lies between the e at which the failing Bernstein coefficient reaches 0
+/// (still admissible) and the full e (known not to be); in that bracket Φ of theorem 1 changes sign exactly once.
+/// Roots of Φ outside the bracket, where B and C are positive and Φ means nothing, cannot be taken.
+fn largest_scale(a: f64, d: f64, full: f64) -> f64 {
+    let (b, c) = (2.0 - a + full, 2.0 - d - full);
+    if b >= 0.0 && c >= 0.0 {
+        // Conditions (12), (13). Both cannot fail: B + C = 4 − a − d ≥ 0.
+        return 1.0;
+    }
+    // By symmetry (t ↔ 1 − t) let it be C that fails, at e > 0.
+    let (a, d, full) = if c < 0.0 { (a, d, full) } else { (d, a, -full) };
+    let room = 2.0 - d;
+    // Φ over A D-free scaling; negative or zero: non-negative derivative (theorem 1).
+    let phi = |e: f64| {
+        let (b, c) = (2.0 - a + e, room - e);
+        3.0 * (b * c) * (b * c) + 6.0 * (a * d) * (b * c)
+            - 4.0 * (a * c * c * c + b * b * b * d)
+            - (a * d) * (a * d)
+    };
+    if a == 0.0 && d == 0.0 {
+        return 1.0;
+    }
+    // Case 3 (D = 0): C ≥ 0 itself is necessary.
+    if d == 0.0 {
+        return (room / full * INSIDE).min(1.0);
+    }
+    if phi(full) <= 0.0 {
+        return 1.0;
+    }
+    let (mut lo, mut hi) = (room, full);
+    let (mut f_lo, mut f_hi) = (phi(lo), phi(hi));
+    // Φ(lo) ≤ 0 < Φ(hi): false position with halved weights (Illinois), bisection every fourth step.
+    let mut side = 0;
+    for k in 0..100 {
+        if hi - lo <= 1e-14 * hi {
+            break;
+        }
+        let secant = lo + (hi - lo) * (f_lo / (f_lo - f_hi));
+        let e = if k % 4 != 3 && secant > lo && secant < hi { secant } else { 0.5 * (lo + hi) };
+        let f = phi(e);
+        if f <= 0.0 {
+            (lo, f_lo) = (e, f);
+            if side == 1 {
+                f_hi *= 0.5;
+            }
+            side = 1;
+        } else {
+            (hi, f_hi) = (e, f);
+            if side == 2 {
+                f_lo *= 0.5;
+            }
+            side = 2;
+        }
+    }
+    (lo * INSIDE / full).min(1.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::quartic_form::least;
+
+    /// The derivative (4) elevated to a quartic, so that the exact minimum of quartics can judge it.
+    fn elevated(a: f64, d: f64, e: f64) -> [f64; 5] {
+        let (b, c) = (2.0 - a + e, 2.0 - d - e);
+        [a, (a + 3.0 * b) / 4.0, (b + c) / 2.0, (3.0 * c + d) / 4.0, d]
+    }
+
+    #[test]
+    fn lambda_is_admissible_and_the_largest() {
+        let grid = [0.0, 1e-9, 1e-3, 0.1, 0.5, 0.9, 1.0, 1.3, 1.7, 1.999, 2.0];
+        let mut scaled = 0;
+        for a in grid {
+            for d in grid {
+                for alpha in [0.0, 0.5, 1.0, 3.0, 8.0, 20.0, 1e3] {
+                    for beta in [0.0, 0.5, 1.0, 3.0, 8.0, 20.0, 1e3] {
+                        let full = 2.0 / 3.0 * (alpha * a - beta * d);
+                        let lambda = largest_scale(a, d, full);
+                        assert!((0.0..=1.0).contains(&lambda));
+                        let size = 1.0 + (lambda * full).abs();
+                        let here = least(&elevated(a, d, lambda * full));
+                        assert!(here >= -1e-13 * size, "{a} {d} {alpha} {beta}: {here:e}");
+                        if lambda < 1.0 {
+                            scaled += 1;
+                            let beyond = (lambda * (1.0 + 1e-5)).min(1.0) * full;
+                            let there = least(&elevated(a, d, beyond));
+                            assert!(there < 0.0, "{a} {d} {alpha} {beta} λ {lambda}: {there:e}");
+                        }
+                    }
+                }
+            }
+        }
+        assert!(scaled > 1000);
+    }
+}

@@ -1,0 +1,76 @@
+//! Every refusal names the argument, the index and the value.
+#![allow(clippy::unwrap_used)]
+
+use shapespline_monotone::*;
+
+fn quartic(x: &[f64], y: &[f64]) -> String {
+    MonotoneQuartic::new(x, y, &QuarticOptions::default()).unwrap_err().to_string()
+}
+
+fn quintic(x: &[f64], y: &[f64]) -> String {
+    MonotoneQuintic::new(x, y, &QuinticOptions::default()).unwrap_err().to_string()
+}
+
+#[test]
+fn data() {
+    for (x, y, parts) in [
+        (vec![0.0], vec![1.0], vec!["x has 1", "2 are needed"]),
+        (vec![], vec![], vec!["x has 0"]),
+        (vec![0.0, 1.0], vec![1.0], vec!["y has 1", "expected 2"]),
+        (vec![0.0, f64::NAN, 2.0], vec![0.0; 3], vec!["x[1]", "NaN"]),
+        (vec![0.0, 1.0, f64::INFINITY], vec![0.0; 3], vec!["x[2]", "inf"]),
+        (vec![0.0, 1.0, 2.0], vec![0.0, 1.0, f64::NEG_INFINITY], vec!["y[2]", "-inf"]),
+        (vec![0.0, 1.0, 1.0], vec![0.0; 3], vec!["x[2] = 1", "strictly increasing"]),
+        (vec![0.0, 3.0, 2.0], vec![0.0; 3], vec!["x[2] = 2", "3"]),
+        (vec![-1.5e308, 1.5e308], vec![0.0; 2], vec!["spread", "x[1]"]),
+        (vec![0.0, 1.0], vec![-1.5e308, 1.5e308], vec!["spread", "y[1]"]),
+    ] {
+        for message in [quartic(&x, &y), quintic(&x, &y)] {
+            for part in &parts {
+                assert!(message.contains(part), "{message:?} lacks {part:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn options() {
+    let (x, y) = ([0.0, 1.0, 2.0], [0.0, 1.0, 3.0]);
+    let with = |shape, slopes| {
+        let options = QuarticOptions { shape, slopes, ..QuarticOptions::default() };
+        MonotoneQuartic::new(&x, &y, &options).unwrap_err().to_string()
+    };
+    assert!(with(Shape::Uniform(-1.0), Slopes::FritschButland).contains("shape[0] = -1"));
+    assert!(with(Shape::Uniform(f64::NAN), Slopes::FritschButland).contains("NaN"));
+    let pair = Shape::Segments { alpha: vec![1.0, 2.0], beta: vec![1.0, -2.0] };
+    assert!(with(pair, Slopes::FritschButland).contains("beta[1] = -2"));
+    let pair = Shape::Segments { alpha: vec![1.0], beta: vec![1.0, 2.0] };
+    assert!(with(pair, Slopes::FritschButland).contains("alpha has 1"));
+    let optimal = with(Shape::default(), Slopes::Optimal);
+    assert!(optimal.contains("optimal") && optimal.contains("fritsch-butland"), "{optimal}");
+    let given = |slopes| {
+        let options = QuinticOptions { slopes: Slopes::Given(slopes), ..QuinticOptions::default() };
+        MonotoneQuintic::new(&x, &y, &options).unwrap_err().to_string()
+    };
+    assert!(given(vec![1.0]).contains("slopes has 1"));
+    assert!(given(vec![1.0, f64::NAN, 1.0]).contains("slopes[1] is NaN"));
+    assert!("x".parse::<Fairness>().unwrap_err().to_string().contains("bending, parametric"));
+    assert!("x".parse::<Extrapolation>().unwrap_err().to_string().contains("linear"));
+    assert_eq!("clip".parse::<Extrapolation>().unwrap(), Extrapolation::CLIP);
+    assert_eq!("parametric".parse::<Fairness>().unwrap(), Fairness::Parametric);
+}
+
+/// Slopes outside the admissible region are limited to it, and reported as used.
+#[test]
+fn given_slopes_are_limited() {
+    let (x, y) = ([0.0, 1.0, 2.0], [0.0, 1.0, 3.0]);
+    let options = QuinticOptions {
+        slopes: Slopes::Given(vec![-1.0, 50.0, 1.0]),
+        ..QuinticOptions::default()
+    };
+    let f = MonotoneQuintic::new(&x, &y, &options).unwrap();
+    assert_eq!(f.slopes()[0], 0.0);
+    assert!(f.slopes()[1] <= 2.0);
+    assert_eq!(f.slopes()[2], 1.0);
+    assert!(f.diagnostics().certified);
+}

@@ -1,0 +1,289 @@
+//! The shape report for Python: what was found, and what is made of it when asked for.
+//!
+//! [`record`] is one line of it, [`subject`] what it is about, [`export`] its other forms.
+
+use std::sync::OnceLock;
+
+use pyo3::{
+    call::PyCallArgs,
+    exceptions::{PyTypeError, PyValueError},
+    prelude::*,
+    types::{PyBytes, PyDict},
+};
+use rayon::prelude::*;
+use shapespline::criteria::{self, Criteria, Record, Tolerances};
+
+use crate::{curve::boundary_object, pickle, work::detached};
+
+mod export;
+mod record;
+mod subject;
+
+pub(crate) use record::ShapeRecord;
+pub(crate) use subject::Subject;
+
+/// Segments a task when records are made.
+const BLOCK: usize = 2048;
+
+/// What a check of a curve's shape found; made by `check_shape` and by the method ``check`` of a curve.
+///
+/// Holds the violations, what stays open, and counts; the records of all segments and the notes on
+/// nodes are made when asked for. Prints as a table. Immutable and picklable.
+///
+/// Examples
+/// --------
+/// >>> import shapespline as ss
+/// >>> points = [[0, 0, 0], [4, 0, 0], [4.5, 0.5, 0], [4.5, 1, 0.5], [4.5, 1, 5]]
+/// >>> report = ss.NuSpline(points, "uniform").check()
+/// >>> report.ok, report.counts()["convexity"]
+/// (False, (2, 2))
+/// >>> [(v.criterion, v.segment) for v in report.violations]
+/// [('convexity', 1), ('torsion', 1), ('convexity', 2), ('torsion', 2)]
+/// >>> ss.NuSpline.shape_preserving(points, "uniform").check().ok
+/// True
+#[pyclass(module = "shapespline", frozen)]
+pub(crate) struct ShapeReport {
+    pub(crate) report: criteria::ShapeReport,
+    pub(crate) subject: Subject,
+    pub(crate) criteria: Criteria,
+    pub(crate) tolerances: Tolerances,
+    margin: OnceLock<f64>,
+}
+
+impl ShapeReport {
+    pub(crate) fn of(
+        report: criteria::ShapeReport,
+        subject: Subject,
+        criteria: Criteria,
+        tolerances: Tolerances,
+    ) -> Self {
+        Self { report, subject, criteria, tolerances, margin: OnceLock::new() }
+    }
+
+    /// Checks a subject.
+    pub(crate) fn make(
+        py: Python<'_>,
+        subject: Subject,
+        criteria: Criteria,
+        tolerances: Tolerances,
+    ) -> PyResult<Self> {
+        let check = || subject.judge(criteria, tolerances, |judge| judge.report());
+        let report = detached(py, subject.segments(), check).map_err(PyValueError::new_err)?;
+        Ok(Self::of(report, subject, criteria, tolerances))
+    }
+
+    /// Makes something of the records of every segment, criterion by criterion, in order.
+    fn records<T: Send>(
+        &self,
+        py: Python<'_>,
+        make: impl Fn(Record) -> T + Send + Sync,
+    ) -> PyResult<Vec<T>> {
+        let segments = self.subject.segments();
+        let records = detached(py, segments, || {
+            self.subject.judge(self.criteria, self.tolerances, |judge| {
+                let of = |i: usize| {
+                    let record = |criterion| make(judge.record(i, criterion));
+                    self.criteria.iter().map(record).collect::<Vec<T>>()
+                };
+                if segments <= 2 * BLOCK {
+                    (0..segments).flat_map(of).collect()
+                } else {
+                    (0..segments).into_par_iter().with_min_len(BLOCK).flat_map_iter(of).collect()
+                }
+            })
+        });
+        records.map_err(PyValueError::new_err)
+    }
+
+    /// The verdict in a word.
+    fn verdict(&self) -> &'static str {
+        match (self.report.ok(), self.report.violations.is_empty()) {
+            (true, _) => "preserved",
+            (false, true) => "undecided",
+            (false, false) => "violated",
+        }
+    }
+
+    /// What the paper says of nodes and of oscillation.
+    fn notes(&self, py: Python<'_>) -> PyResult<criteria::Notes> {
+        let make = || self.subject.judge(self.criteria, self.tolerances, |judge| judge.notes());
+        detached(py, self.subject.segments(), make).map_err(PyValueError::new_err)
+    }
+}
+
+/// Objects of a class of `shapespline._records`, one for each tuple of its fields.
+fn records<'py, T>(
+    py: Python<'py>,
+    class: &str,
+    parts: impl Iterator<Item = T>,
+) -> PyResult<Vec<Bound<'py, PyAny>>>
+where
+    T: PyCallArgs<'py>,
+{
+    let class = py.import("shapespline._records")?.getattr(class)?;
+    parts.map(|fields| class.call1(fields)).collect()
+}
+
+#[pymethods]
+impl ShapeReport {
+    #[new]
+    fn new() -> PyResult<Self> {
+        Err(PyTypeError::new_err(
+            "a ShapeReport is made by check_shape(), or by the method check() of a curve",
+        ))
+    }
+
+    /// Whether every criterion that applies is satisfied, and none is left undecided.
+    #[getter]
+    fn ok(&self) -> bool {
+        self.report.ok()
+    }
+
+    /// The smallest margin of all records that apply: positive when the shape is preserved.
+    ///
+    /// A number without unit; infinite when nothing applies. Cost O(N) at the first access.
+    #[getter]
+    fn margin(&self, py: Python<'_>) -> PyResult<f64> {
+        if let Some(margin) = self.margin.get() {
+            return Ok(*margin);
+        }
+        let margins = self.records(py, |r| if r.applicable { r.margin } else { f64::INFINITY })?;
+        let margin = margins.into_iter().fold(f64::INFINITY, f64::min);
+        Ok(*self.margin.get_or_init(|| margin))
+    }
+
+    /// The violations, ascending by segment: a list of `ShapeRecord`.
+    #[getter]
+    fn violations(&self) -> Vec<ShapeRecord> {
+        self.report.violations.iter().map(ShapeRecord::from).collect()
+    }
+
+    /// One `ShapeRecord` a segment and criterion asked for, by segment: a list.
+    ///
+    /// The list is made anew at each access, cost O(N): keep it in a variable.
+    #[getter]
+    fn segments(&self, py: Python<'_>) -> PyResult<Vec<ShapeRecord>> {
+        self.records(py, |r| ShapeRecord::from(&r))
+    }
+
+    /// What could be neither proved nor refuted, ascending by segment: a list of `UndecidedRecord`.
+    ///
+    /// Always empty for curves whose segments are single cubics, which are decided exactly. On curves
+    /// of other degrees a value that is zero to rounding can stay open; such a record is not counted
+    /// as violated, but the report is not ``ok``, and in ``segments`` its margin is 0.
+    #[getter]
+    fn undecided<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyAny>>> {
+        let open = self.report.undecided.iter();
+        let parts = open.map(|u| (u.segment, u.criterion.name(), (u.interval[0], u.interval[1])));
+        records(py, "UndecidedRecord", parts)
+    }
+
+    /// What the paper says of the nodes beyond the criteria, as information: a list of `NodeRecord`.
+    ///
+    /// ``"compatibility"``: the tangent lies between the chords, seen along the binormal vector
+    /// ((12.1) of Gautam). ``"same-torsion"``: torsion of the polygon's sign on both sides
+    /// (Definition 9.2, item 2). ``"torsion-change"``: torsion that vanishes or jumps where the
+    /// polygon's changes sign (Theorem 12.1). ``"convex-neighbourhood"`` and
+    /// ``"inflection-neighbourhood"``: the conditions of Definition 8.2 around three points on a line;
+    /// a curve through the middle one can meet the first with equality only, by being straight.
+    ///
+    /// None of them enters ``ok`` or ``counts``. Made anew at each access; cost O(N), much slower than
+    /// the check.
+    #[getter]
+    fn nodes<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyAny>>> {
+        let notes = self.notes(py)?;
+        let parts = notes.nodes.iter();
+        let parts = parts.map(|r| (r.node, r.condition.name(), r.satisfied, r.margin, r.location));
+        records(py, "NodeRecord", parts)
+    }
+
+    /// How the segments that call for coplanarity move about their plane, as information: a list of
+    /// `OscillationRecord` (Gautam, section 10).
+    ///
+    /// Made anew at each access, as ``nodes``.
+    #[getter]
+    fn oscillations<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyAny>>> {
+        let notes = self.notes(py)?;
+        let parts = notes
+            .oscillations
+            .iter()
+            .map(|r| (r.segment, r.crossings, r.least, r.satisfied, r.amplitude, r.location));
+        records(py, "OscillationRecord", parts)
+    }
+
+    /// The end conditions that the points were judged with: ``"zero-curvature"``, ``"periodic"``,
+    /// ``"circular"`` or a `Tangents`.
+    ///
+    /// They say what stands in for the missing chord at each end, and so what the first and the last
+    /// segment are asked.
+    #[getter]
+    fn boundary<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        match &self.subject {
+            Subject::Own(curve) => boundary_object(py, curve.boundary(), curve.cubic().dimension()),
+            Subject::Other { polygon, .. } => {
+                boundary_object(py, polygon.boundary(), polygon.dimension())
+            }
+        }
+    }
+
+    /// How often each criterion asked for is violated, and how often it applies.
+    ///
+    /// Returns
+    /// -------
+    /// dict[str, tuple[int, int]]
+    ///     Criterion to (violated, applicable), counted in segments.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import shapespline as ss
+    /// >>> report = ss.NuSpline([[0, 0], [1, 1], [2, 0], [3, 1]]).check(["inflection"])
+    /// >>> report.counts()
+    /// {'inflection': (0, 1)}
+    fn counts<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let counts = PyDict::new(py);
+        for criterion in self.criteria.iter() {
+            let count = self.report.count(criterion);
+            counts.set_item(criterion.name(), (count.violated, count.applicable))?;
+        }
+        Ok(counts)
+    }
+
+    fn __str__(&self) -> String {
+        self.report.to_string().trim_end().to_owned()
+    }
+
+    fn __repr__(&self) -> String {
+        let mut text =
+            format!("<ShapeReport: shape {} on {}", self.verdict(), self.report.segments);
+        text += if self.report.segments == 1 { " segment" } else { " segments" };
+        let found = [
+            (self.report.violations.len(), "violation", "violations"),
+            (self.report.undecided.len(), "undecided", "undecided"),
+        ];
+        for (count, one, many) in found {
+            match count {
+                0 => {}
+                1 => text += &format!(", 1 {one}"),
+                _ => text += &format!(", {count} {many}"),
+            }
+        }
+        text + ">"
+    }
+
+    fn __reduce__<'py>(
+        &self,
+        py: Python<'py>,
+    ) -> PyResult<(Bound<'py, PyAny>, (Bound<'py, PyBytes>,))> {
+        let make = py.import("shapespline._core")?.getattr("_report_from_bytes")?;
+        let bytes = detached(py, 0, || pickle::write_report(self))?;
+        Ok((make, (PyBytes::new(py, &bytes),)))
+    }
+
+    fn __copy__(slf: Py<Self>) -> Py<Self> {
+        slf
+    }
+
+    fn __deepcopy__(slf: Py<Self>, _memo: &Bound<'_, PyAny>) -> Py<Self> {
+        slf
+    }
+}

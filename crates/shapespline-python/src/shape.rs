@@ -1,0 +1,194 @@
+//! What the package `shapespline` wraps: checks of any curve, inflection counts, shapes of polygons.
+
+use std::sync::Arc;
+
+use numpy::PyArray1;
+use pyo3::{IntoPyObjectExt, exceptions::PyValueError, prelude::*, types::PyDict};
+use shapespline::{
+    criteria::{
+        CurveError, INTERPOLATION, InflectionCount, Tolerances, curve_inflections,
+        curve_inflections_from, polygon_inflections, polygon_inflections_from, polygon_shape,
+    },
+    geometry::{self, Boundary, DVec3, DVec4, DataPolygon, Dimension, Parametrization, normalize},
+};
+
+use crate::{
+    error::input_error,
+    input::{Numbers, Points, numbers},
+    options::{self, CriteriaNames, Ends, Parameters, tolerances},
+    output::{vector, vectors},
+    piecewise::PiecewiseBezier,
+    report::{ShapeReport, Subject},
+    work::detached,
+};
+
+/// Directions of the curve at its two ends that differ by a smaller sine close it smoothly.
+const SMOOTH: f64 = 1e-6;
+
+/// The report on points and a curve through them.
+#[pyfunction]
+#[allow(clippy::too_many_arguments)]
+pub(crate) fn _check_shape(
+    py: Python<'_>,
+    points: Points,
+    curve: &Bound<'_, PiecewiseBezier>,
+    parameters: Option<Parameters>,
+    boundary: Option<Ends>,
+    criteria: CriteriaNames,
+    #[pyo3(from_py_with = options::coplanarity)] coplanarity: f64,
+    #[pyo3(from_py_with = options::collinearity)] collinearity: f64,
+    #[pyo3(from_py_with = options::tolerance)] tolerance: f64,
+) -> PyResult<ShapeReport> {
+    let tolerances = tolerances(coplanarity, collinearity, tolerance)?;
+    let curve = Arc::clone(&curve.get().curve);
+    let Points { points, dimension } = points;
+    if dimension != curve.dimension() {
+        let [points, curve] = [dimension, curve.dimension()].map(Dimension::len);
+        return Err(PyValueError::new_err(CurveError::Dimension { points, curve }.to_string()));
+    }
+    let parametrization = match parameters {
+        Some(given) => given.0,
+        None if curve.breaks().len() == points.len() => {
+            Parametrization::Given(curve.breaks().to_vec())
+        }
+        None => {
+            return Err(PyValueError::new_err(format!(
+                "parameters must be given: the curve has {} breaks, but there are {} points",
+                curve.breaks().len(),
+                points.len()
+            )));
+        }
+    };
+    // The parameters first: where the curve closes is asked of it at the first and the last.
+    let open = || {
+        let (points, ends) = (points.clone(), Boundary::ZeroCurvature);
+        DataPolygon::with_dimension(points, dimension, &parametrization, ends).map_err(input_error)
+    };
+    let boundary = match boundary {
+        Some(ends) => ends.of(dimension)?,
+        None if closes_smoothly(&curve, &points, open()?.parameters()) => Boundary::Periodic,
+        None => Boundary::ZeroCurvature,
+    };
+    let polygon = DataPolygon::with_dimension(points, dimension, &parametrization, boundary)
+        .map_err(input_error)?;
+    let interpolation = INTERPOLATION.max(tolerances.zero);
+    let subject = Subject::Other { polygon: Arc::new(polygon), curve, interpolation };
+    ShapeReport::make(py, subject, criteria.0, tolerances)
+}
+
+/// Whether the last point is the first, and the curve goes on there in the direction it began with.
+fn closes_smoothly(curve: &geometry::PiecewiseBezier, points: &[DVec3], u: &[f64]) -> bool {
+    let n = points.len() - 1;
+    if n < 2 || points[0] != points[n] {
+        return false;
+    }
+    let begins = curve.between([u[0], u[1]], points[0]);
+    let ends = curve.between([u[n - 1], u[n]], points[n]);
+    let (Some(first), Some(last)) = (begins.first(), ends.last()) else { return false };
+    let chord = |i: usize| geometry::length(points[i + 1] - points[i]);
+    let start = direction(first.control.iter(), chord(0));
+    let end = -direction(last.control.iter().rev(), chord(n - 1));
+    start.dot(end) > 0.0 && start.cross(end).length() <= SMOOTH
+}
+
+/// Unit vector to the first control point that is not the end itself.
+fn direction<'a>(mut control: impl Iterator<Item = &'a DVec4>, chord: f64) -> DVec3 {
+    let place = |p: &DVec4| p.truncate() / p.w;
+    let Some(start) = control.next().map(place) else { return DVec3::ZERO };
+    let legs = control.map(|p| place(p) - start);
+    let leg = legs.into_iter().find(|leg| geometry::length(*leg) > 1e-12 * chord);
+    leg.map_or(DVec3::ZERO, normalize)
+}
+
+/// `direction`: a vector in space, or `None`.
+fn view(object: &Bound<'_, PyAny>) -> PyResult<Option<DVec3>> {
+    if object.is_none() {
+        return Ok(None);
+    }
+    let given = match numbers("direction", object)? {
+        Numbers::Many(v) if v.len() == 3 => DVec3::from_slice(&v),
+        Numbers::Many(v) => {
+            let text = format!("direction must have 3 components, got {}", v.len());
+            return Err(PyValueError::new_err(text));
+        }
+        Numbers::One(value) => {
+            let text = format!("direction must be a vector of 3 components, got {value}");
+            return Err(PyValueError::new_err(text));
+        }
+    };
+    if let Some(i) = given.to_array().iter().position(|x| !x.is_finite()) {
+        let text = format!("direction[{i}] must be finite, got {}", given.to_array()[i]);
+        return Err(PyValueError::new_err(text));
+    }
+    if given == DVec3::ZERO {
+        return Err(PyValueError::new_err("direction must not be the zero vector"));
+    }
+    Ok(Some(given))
+}
+
+/// Count, direction, whether it is certain.
+type Counted<'py> = (usize, Bound<'py, PyAny>, bool);
+
+fn counted(py: Python<'_>, count: InflectionCount) -> Counted<'_> {
+    (count.count, vector(py, count.direction, 3).into_any(), count.exact)
+}
+
+#[pyfunction]
+pub(crate) fn _polygon_inflections<'py>(
+    py: Python<'py>,
+    points: Points,
+    #[pyo3(from_py_with = view)] direction: Option<DVec3>,
+) -> PyResult<Counted<'py>> {
+    let Points { points, dimension } = points;
+    let count = detached(py, points.len(), || match direction {
+        Some(direction) => polygon_inflections_from(&points, direction),
+        None => polygon_inflections(&points, dimension),
+    });
+    count.map(|count| counted(py, count)).map_err(input_error)
+}
+
+#[pyfunction]
+pub(crate) fn _curve_inflections<'py>(
+    py: Python<'py>,
+    curve: &Bound<'py, PiecewiseBezier>,
+    #[pyo3(from_py_with = view)] direction: Option<DVec3>,
+) -> PyResult<Counted<'py>> {
+    let curve = &curve.get().curve;
+    let count = detached(py, curve.pieces(), || match direction {
+        Some(direction) => curve_inflections_from(curve, direction),
+        None => Ok(curve_inflections(curve)),
+    });
+    count.map(|count| counted(py, count)).map_err(input_error)
+}
+
+/// The discrete shape of points, by the names of its parts.
+#[pyfunction]
+pub(crate) fn _polygon_shape<'py>(
+    py: Python<'py>,
+    points: Points,
+    parameters: Parameters,
+    boundary: Ends,
+    #[pyo3(from_py_with = options::tolerance)] tolerance: f64,
+) -> PyResult<Bound<'py, PyDict>> {
+    let Points { points, dimension } = points;
+    let boundary = boundary.of(dimension)?;
+    let tolerances = Tolerances { zero: tolerance, ..Tolerances::default() };
+    let tolerances = tolerances.validate().map_err(input_error)?;
+    let made = detached(py, points.len(), || {
+        let polygon = DataPolygon::with_dimension(points, dimension, &parameters.0, boundary)?;
+        Ok((polygon_shape(&polygon, &tolerances), polygon))
+    });
+    let (shape, polygon) = made.map_err(input_error)?;
+    let calls: Vec<Vec<&str>> =
+        shape.calls.iter().map(|calls| calls.iter().map(|c| c.name()).collect()).collect();
+    let parts = PyDict::new(py);
+    parts.set_item("points", vectors(py, polygon.points(), dimension)?)?;
+    parts.set_item("parameters", PyArray1::from_slice(py, polygon.parameters()))?;
+    parts.set_item("extent", shape.extent.name())?;
+    parts.set_item("chords", vectors(py, &shape.chords, dimension)?)?;
+    parts.set_item("binormals", vectors(py, &shape.binormals, Dimension::Three)?)?;
+    parts.set_item("turning_angles", PyArray1::from_vec(py, shape.turning_angles))?;
+    parts.set_item("torsion", PyArray1::from_vec(py, shape.torsion))?;
+    parts.set_item("calls", calls.into_bound_py_any(py)?)?;
+    Ok(parts)
+}

@@ -1,0 +1,98 @@
+"""Curves of other libraries as Bézier pieces.
+
+Known by what they have, so that SciPy is not imported: ``t, c, k`` is a B-spline, ``x, c`` a
+piecewise polynomial, in the Bernstein basis where the class or one above it is called ``BPoly``.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from shapespline._core import PiecewiseBezier, SpaceCurve
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Floats = NDArray[np.float64]
+
+ACCEPTED = (
+    "a shapespline curve, a SciPy BSpline, PPoly or BPoly, a PiecewiseBezier, or an array of "
+    "Bézier control points of shape (segments, degree + 1, dim)"
+)
+
+
+def _coefficients(name: str, values: Any, *, leading: int) -> Floats:
+    """Return coefficients as floats, with axes (…, dim); one component becomes a last axis of 1."""
+    array = np.asarray(values)
+    if array.dtype.kind not in "biuf":
+        raise TypeError(f"{name} must hold real numbers, got dtype {array.dtype}")
+    if array.ndim == leading:
+        array = array[..., None]
+    if array.ndim != leading + 1 or array.shape[-1] not in (1, 2, 3):
+        raise ValueError(
+            f"{name} must belong to a curve in the plane or in space, or to a function; got shape "
+            f"{np.shape(values)}"
+        )
+    return array.astype(float)
+
+
+def _of_bspline(curve: Any) -> PiecewiseBezier:
+    knots = np.asarray(curve.t, dtype=float)
+    degree = int(curve.k)
+    count = len(knots) - degree - 1
+    # SciPy looks at no more than these.
+    control = _coefficients("curve.c", curve.c, leading=1)
+    control = control[:count] if count > degree else control
+    if control.shape[1] == 1:
+        # The graph of a function: x is a B-spline with Greville's abscissae.
+        if degree < 1:
+            raise ValueError("degree must be at least 1, got 0")
+        windows = np.lib.stride_tricks.sliding_window_view(knots[1:-1], degree)
+        control = np.column_stack([windows.mean(axis=1)[: len(control)], control])
+    return PiecewiseBezier.from_bspline(knots, control, degree)
+
+
+def _of_powers(curve: Any) -> PiecewiseBezier:
+    breaks = np.asarray(curve.x, dtype=float)
+    coefficients = _coefficients("curve.c", curve.c, leading=2)
+    if coefficients.shape[2] == 1:
+        if len(coefficients) < 2:
+            coefficients = np.concatenate([np.zeros_like(coefficients), coefficients])
+        x = np.zeros_like(coefficients)
+        x[-2] = 1.0
+        x[-1, :, 0] = breaks[: x.shape[1]]
+        coefficients = np.concatenate([x, coefficients], axis=2)
+    return PiecewiseBezier.from_power(coefficients, breaks)
+
+
+def _of_bernstein(curve: Any) -> PiecewiseBezier:
+    breaks = np.asarray(curve.x, dtype=float)
+    control = _coefficients("curve.c", curve.c, leading=2).swapaxes(0, 1)
+    if control.shape[2] == 1:
+        if control.shape[1] < 2:
+            control = np.repeat(control, 2, axis=1)
+        t = np.linspace(0.0, 1.0, control.shape[1])
+        start, end = breaks[:-1, None], breaks[1:, None]
+        x = start * (1 - t) + end * t
+        control = np.concatenate([x[: len(control), :, None], control], axis=2)
+    return PiecewiseBezier(control, breaks)
+
+
+def _is_array(curve: Any) -> bool:
+    return isinstance(curve, (list, tuple)) or hasattr(curve, "__array__")
+
+
+def piecewise(curve: Any) -> PiecewiseBezier:
+    """Return any accepted curve that knows its parameters as Bézier pieces."""
+    if isinstance(curve, PiecewiseBezier):
+        return curve
+    if isinstance(curve, SpaceCurve):
+        return PiecewiseBezier(curve.bezier, curve.parameters)
+    if all(hasattr(curve, name) for name in ("t", "c", "k")):
+        return _of_bspline(curve)
+    if hasattr(curve, "x") and hasattr(curve, "c"):
+        names = {base.__name__ for base in type(curve).__mro__}
+        return _of_bernstein(curve) if "BPoly" in names else _of_powers(curve)
+    raise TypeError(f"curve must be {ACCEPTED}; got {type(curve).__name__}")
