@@ -126,7 +126,7 @@ BAD_VALUES = {
     "too few tensions": (fit(tension=[1.0, 2.0]), ["tension", "2", "6"]),
     "tension of one node given twice": (
         fit(CLOSED, boundary="periodic", tension=changed(np.zeros(N + 1), 6, 3.5)),
-        ["tension[6]", "first", "3.5"],
+        ["tension[6]", "tension[0]", "3.5"],
     ),
     "λ of zero": (scaled(0.0), ["tangent_scale", "(0, 1]", "0"]),
     "λ above one": (scaled(1.25), ["tangent_scale", "(0, 1]", "1.25"]),
@@ -148,7 +148,7 @@ BAD_VALUES = {
     "λ in three axes": (scaled(np.ones((3, 2))), ["tangent_scale", "(3, 2)"]),
     "λ of one node given twice": (
         scaled(changed(np.ones(N + 1), 6, 0.5), CLOSED, boundary="periodic"),
-        ["tangent_scale[6]", "first", "0.5"],
+        ["tangent_scale[6]", "tangent_scale[0]", "0.5"],
     ),
     "ρ of one": (reduced(step=1.0), ["step", "(0, 1)", "1"]),
     "fourth derivative in s": (lambda: ss.TensionSpline(POINTS)(0.5, 4), ["nu", "3", "4"]),
