@@ -9,6 +9,8 @@ import polygons
 import shapespline as ss
 
 STRATEGIES = ("nussp", "growth", "fairest")
+#: the families of curves that must pass the same checks
+FAMILIES = (ss.NuSpline, ss.TensionSpline, ss.CatmullRom)
 
 
 @dataclass(frozen=True)
@@ -19,17 +21,30 @@ class Case:
     points: npt.NDArray[np.float64]
     parameters: object = "chordal"
     boundary: object = "zero-curvature"
+    family: type[ss.SpaceCurve] = ss.NuSpline
 
     def __str__(self) -> str:
-        return self.name
+        name = self.family.__name__
+        return self.name if self.family is ss.NuSpline else f"{name}: {self.name}"
 
-    def fit(self, **options: object) -> ss.NuSpline:
-        """Return the ν-spline with given tension."""
-        return ss.NuSpline(self.points, self.parameters, boundary=self.boundary, **options)
+    def fit(self, **options: object) -> ss.SpaceCurve:
+        """Return the curve with given tension."""
+        return self.family(self.points, self.parameters, boundary=self.boundary, **options)
 
-    def preserve(self, **options: object) -> ss.NuSpline:
-        """Return the shape-preserving ν-spline."""
-        return ss.NuSpline.shape_preserving(
+    def tense(self, tension: npt.ArrayLike) -> ss.SpaceCurve:
+        """Return the curve with tension, in the units of ν or 1/λ − 1, whatever the family."""
+        tension = np.asarray(tension, dtype=float)
+        if self.family is ss.TensionSpline:
+            return self.fit(tangent_scale=1 / (1 + tension))
+        if self.family is ss.CatmullRom:
+            return self.fit(tension=tension / (1 + tension))
+        return self.fit(tension=tension)
+
+    def preserve(self, **options: object) -> ss.SpaceCurve:
+        """Return the shape-preserving curve; Catmull–Rom curves know no strategy."""
+        if self.family is ss.CatmullRom:
+            options.pop("strategy", None)
+        return self.family.shape_preserving(
             self.points, self.parameters, boundary=self.boundary, **options
         )
 
@@ -50,7 +65,12 @@ class Case:
         boundary = self.boundary
         if isinstance(boundary, ss.Tangents):
             boundary = ss.Tangents(-boundary.end, -boundary.start)
-        return Case(self.name, self.points[::-1], (u[-1] + u[0]) - u[::-1], boundary)
+        return replace(
+            self,
+            points=self.points[::-1],
+            parameters=(u[-1] + u[0]) - u[::-1],
+            boundary=boundary,
+        )
 
 
 def space_set(name: str, end: str) -> Case:
@@ -93,3 +113,8 @@ def small() -> list[Case]:
         Case("plane, closed", polygons.close(plane), "uniform", "periodic"),
         Case("plane, tangents", plane, "chordal", ss.Tangents([1.0, 0.5], [-0.2, 2.0])),
     ]
+
+
+def of_every_family(cases: list[Case]) -> list[Case]:
+    """Return each case once for each family of curves."""
+    return [replace(case, family=family) for family in FAMILIES for case in cases]

@@ -301,24 +301,61 @@ def shape_by_sampling(
     return Sampled(asked, {name: asked[name] & found[name] for name in CRITERIA})
 
 
+def image_derivative(curve: object) -> Derivative:
+    """Return the derivatives of a tension cubic's image, run through linearly on each segment.
+
+    Its end legs are h λ⁰ T/3 and h λ¹ T'/3 (Manni 2001, (3.2)); one segment a row of u.
+    """
+    u0, h = curve.parameters[:-1, None], np.diff(curve.parameters)[:, None]
+    start, end = (h * scale[:, None] / 3 for scale in curve.tangent_scale)
+    a, c = start * curve.tangents[:-1], end * curve.tangents[1:]
+    b = np.diff(curve.points, axis=0) - a - c
+    ab, bc = b - a, c - b
+
+    def derivative(u: Array, order: int, side: str) -> Array:
+        t = ((u.reshape(len(h), -1) - u0) / h)[..., None]
+        A, B, C, AB, BC = (v[:, None] for v in (a, b, c, ab, bc))
+        if order == 1:
+            value = 3 * (A * (1 - t) ** 2 + 2 * B * t * (1 - t) + C * t**2)
+        elif order == 2:
+            value = 6 * (AB * (1 - t) + BC * t)
+        else:
+            value = 6 * (BC - AB) + 0 * t
+        for _ in range(order):
+            value = value / h[:, None]
+        return value.reshape(*u.shape, -1)
+
+    return derivative
+
+
 def of_curve(curve: object, **options: float) -> Sampled:
-    """Sample a shapespline curve against its own data, through its public interface only."""
+    """Sample a shapespline curve against its own data, through its public interface only.
+
+    What is sampled is the image run through linearly on each segment: shape does not depend on the
+    parameter, but the halves of a segment near a straight node do.
+    """
     boundary = curve.boundary
     if isinstance(boundary, str):
         if boundary == "circular":
-            # Karavelas & Kaklis, Example 1: the ends' tangents are those of the circles.
-            boundary = (
-                curve.tangents[0] * (1 + curve.tension[0]),
-                curve.tangents[-1] * (1 + curve.tension[-1]),
-            )
+            # Karavelas & Kaklis, Example 1: the ends' tangents are those of the circles, before
+            # tension has shortened them.
+            full = np.ones(len(curve.points))
+            if type(curve).__name__ == "NuSpline":
+                full = 1 + curve.tension
+            elif type(curve).__name__ == "CatmullRom":
+                full = 1 / (1 - curve.tension)
+            boundary = (curve.tangents[0] * full[0], curve.tangents[-1] * full[-1])
         elif boundary != "periodic":
             boundary = None
     else:
         boundary = (boundary.start, boundary.end)
+    derivative = lambda u, order, side: curve(u, order, side=side)  # noqa: E731
+    if hasattr(curve, "image_parameter"):
+        derivative = image_derivative(curve)
     return shape_by_sampling(
         curve.points,
         curve.parameters,
         boundary,
-        lambda u, order, side: curve(u, order, side=side),
+        derivative,
         **options,
     )

@@ -39,6 +39,28 @@ def call(*arguments, **options):
     return lambda: ss.NuSpline(POINTS)(*arguments, **options)
 
 
+def scaled(tangent_scale, points=POINTS, **options):
+    return lambda: ss.TensionSpline(points, tangent_scale=tangent_scale, **options)
+
+
+def handles(**options):
+    return lambda: ss.CatmullRom(POINTS, **options)
+
+
+def safe(**options):
+    return lambda: ss.CatmullRom.shape_preserving(POINTS, **options)
+
+
+def reduced(**options):
+    return lambda: ss.TensionSpline.shape_preserving(POINTS, strategy="reduction", **options)
+
+
+def many(offsets=(0, 4, N), **options):
+    return lambda: ss.fit_many(POINTS, offsets, **options)
+
+
+ONES = np.ones(N - 1)
+
 BAD_VALUES = {
     # what is wrong: (call, pieces of the message)
     "NaN point": (fit(changed(POINTS, (2, 1), np.nan)), ["points[2", "nan"]),
@@ -106,6 +128,71 @@ BAD_VALUES = {
         fit(CLOSED, boundary="periodic", tension=changed(np.zeros(N + 1), 6, 3.5)),
         ["tension[6]", "tension[0]", "3.5"],
     ),
+    "λ of zero": (scaled(0.0), ["tangent_scale", "(0, 1]", "0"]),
+    "λ above one": (scaled(1.25), ["tangent_scale", "(0, 1]", "1.25"]),
+    "NaN λ of a point": (
+        scaled(changed(np.ones(N), 2, np.nan)),
+        ["tangent_scale[2]", "(0, 1]", "nan"],
+    ),
+    "negative λ⁰ of a segment": (
+        scaled((changed(ONES, 3, -0.5), ONES)),
+        ["tangent_scale[0][3]", "(0, 1]", "-0.5"],
+    ),
+    "λ¹ of a segment above one": (
+        scaled((ONES, changed(ONES, 1, 1.5))),
+        ["tangent_scale[1][1]", "(0, 1]", "1.5"],
+    ),
+    "too few λ¹": (scaled((ONES, ONES[:-1])), ["tangent_scale[1]", "4", "5"]),
+    "too many λ⁰": (scaled((np.ones(N), ONES)), ["tangent_scale[0]", "6", "5"]),
+    "too few λ": (scaled(np.ones(4)), ["tangent_scale", "4", "6"]),
+    "λ in three axes": (scaled(np.ones((3, 2))), ["tangent_scale", "(3, 2)"]),
+    "λ of one node given twice": (
+        scaled(changed(np.ones(N + 1), 6, 0.5), CLOSED, boundary="periodic"),
+        ["tangent_scale[6]", "tangent_scale[0]", "0.5"],
+    ),
+    "ρ of one": (reduced(step=1.0), ["step", "(0, 1)", "1"]),
+    "fourth derivative in s": (lambda: ss.TensionSpline(POINTS)(0.5, 4), ["nu", "3", "4"]),
+    "fourth derivatives in s": (lambda: ss.TensionSpline(POINTS)([0.5], 4), ["nu", "3", "4"]),
+    "unclosed periodic tension cubic": (
+        scaled(1.0, changed(CLOSED, (6, 0), 17.5), boundary="periodic"),
+        ["points[6]", "points[0]", "17.5", "periodic"],
+    ),
+    "unclosed periodic Catmull–Rom": (
+        handles(boundary="periodic"),
+        ["points[5]", "points[0]", "periodic"],
+    ),
+    "cardinal tension of one": (handles(tension=1.0), ["tension", "[0, 1)", "1"]),
+    "negative cardinal tension": (
+        handles(tension=changed(np.zeros(N), 2, -0.1)),
+        ["tension[2]", "[0, 1)", "-0.1"],
+    ),
+    "unknown continuity": (handles(continuity="C2"), ["continuity", "'C2'", "'C1'", "'G1'"]),
+    "no safety": (safe(safety=0.0), ["safety", "(0, 1)", "0"]),
+    "safety of one": (safe(safety=1.0), ["safety", "(0, 1)", "1"]),
+    "unknown method": (
+        many(method="cubic"),
+        ["method", "'cubic'", "'nu'", "'tension'", "'catmull-rom'"],
+    ),
+    "unknown treatment of errors": (many(errors="ignore"), ["errors", "'ignore'", "'raise'"]),
+    "offsets that begin late": (many([1, N]), ["offsets[0]", "0", "1"]),
+    "offsets that fall": (many([0, 4, 2, N]), ["offsets[2]", "2"]),
+    "offsets that end early": (many([0, 4]), ["offsets[1]", "4"]),
+    "no offsets": (many([]), ["offsets[0]"]),
+    "negative offset": (many([0, -3, N]), ["offsets[1]", "-3"]),
+    "fractional offset": (many([0, 2.5, N]), ["offsets[1]", "2.5"]),
+    "offsets in two axes": (many([[0, N]]), ["offsets", "(1, 2)"]),
+    "no threads": (many(threads=0), ["threads", "0"]),
+    "parameters of some points": (many(parameters=U[:-1]), ["parameters", "5", "6"]),
+    "NaN exponent of many": (many(parameters=np.nan), ["parameters", "nan"]),
+    "negative step of many": (many(step=-1.0), ["step", "-1"]),
+    "λ above one of many": (
+        many(method="tension", shape_preserving=False, tangent_scale=2.0),
+        ["tangent_scale", "(0, 1]", "2"],
+    ),
+    "points of many in four dimensions": (
+        lambda: ss.fit_many(np.eye(4), [0, 4]),
+        ["points", "(4, 4)"],
+    ),
     "unknown strategy": (
         preserve(strategy="fair"),
         ["strategy", "'fair'", "'nussp'", "'growth'", "'fairest'"],
@@ -156,6 +243,13 @@ BAD_KINDS = {
     "complex tension": (fit(tension=np.ones(N) * 1j), ["tension"]),
     "strategy of a number": (preserve(strategy=1), ["strategy"]),
     "criteria of a number": (preserve(criteria=3), ["criteria"]),
+    "λ of text": (scaled("much"), ["tangent_scale"]),
+    "complex λ¹": (scaled((ONES, 1j * ONES)), ["tangent_scale[1]"]),
+    "safety of text": (safe(safety="some"), ["safety"]),
+    "offsets of text": (many("ab"), ["offsets"]),
+    "fractional threads": (many(threads=1.5), ["threads"]),
+    "an option of another method": (many(safety=0.5), ["safety", "'nu'", "strategy"]),
+    "tension where it is searched for": (many(tension=1.0), ["tension", "shape_preserving"]),
     "query of text": (call("middle"), ["u"]),
     "complex query": (call(1j), ["u"]),
     "fractional derivative": (call(0.5, 1.5), ["nu"]),
@@ -199,6 +293,20 @@ def test_bad_kind(name):
         fit(tension=1e12),
         preserve(step=1e-3, coplanarity=1.0, collinearity=1.0, tolerance=0.0),
         preserve(criteria=[], strategy="nussp"),
+        scaled(1e-12),
+        scaled((0.5, ONES)),
+        scaled(np.full((2, N - 1), 0.25)),
+        scaled([0.5, 0.25], POINTS[:2]),
+        scaled(np.full(N + 1, 0.5), CLOSED, boundary="periodic"),
+        reduced(step=0.999, max_iterations=10_000),
+        lambda: ss.TensionSpline(POINTS)(0.5, 3),
+        handles(tension=0.999, continuity="G1"),
+        handles(boundary="circular"),
+        safe(safety=0.999, continuity="G1"),
+        many(),
+        many([0, 3, N], method="tension", parameters=U, threads=3),
+        many([0, 3, N], method="catmull-rom", safety=0.5, continuity="G1"),
+        lambda: ss.fit_many(np.empty((0, 3)), [0]),
         call(0.5, 7),
         call([], side="left"),
         curve("arc_length", 1.0, 1.0),
@@ -224,10 +332,11 @@ def test_a_fault_far_inside_is_named():
 
 
 @pytest.mark.parametrize("scale", [1e-300, 1e300])
-def test_numbers_at_the_edge_are_fitted_or_refused_but_never_wrong(scale):
+@pytest.mark.parametrize("family", [ss.NuSpline, ss.TensionSpline, ss.CatmullRom])
+def test_numbers_at_the_edge_are_fitted_or_refused_but_never_wrong(family, scale):
     """Beyond the promised 1e±100 an error is fine; a curve with NaN or the wrong points is not."""
     try:
-        curve = ss.NuSpline.shape_preserving(POINTS * scale)
+        curve = family.shape_preserving(POINTS * scale)
     except ValueError:
         return
     assert np.isfinite(curve.tangents).all()

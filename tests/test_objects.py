@@ -2,8 +2,6 @@
 
 import copy
 import pickle
-import threading
-import time
 from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
@@ -13,6 +11,7 @@ import pytest
 import cases
 import polygons
 import shapespline as ss
+import threads
 
 
 def same(a, b):
@@ -32,11 +31,11 @@ def same(a, b):
 
 
 @pytest.mark.parametrize("protocol", range(pickle.HIGHEST_PROTOCOL + 1))
-@pytest.mark.parametrize("case", cases.small(), ids=str)
+@pytest.mark.parametrize("case", cases.of_every_family(cases.small()), ids=str)
 def test_pickling(case, protocol):
-    for curve in (case.fit(tension=0.5), case.preserve()):
+    for curve in (case.tense(0.5), case.preserve()):
         again = pickle.loads(pickle.dumps(curve, protocol))
-        assert type(again) is ss.NuSpline
+        assert type(again) is case.family
         same(curve, again)
         assert again.check().to_dict() == curve.check().to_dict()
     # What the search did is part of what it returned.
@@ -45,7 +44,7 @@ def test_pickling(case, protocol):
 
 
 @pytest.mark.parametrize("copied", [copy.copy, copy.deepcopy])
-@pytest.mark.parametrize("case", cases.small(), ids=str)
+@pytest.mark.parametrize("case", cases.of_every_family(cases.small()), ids=str)
 def test_copying(case, copied):
     curve = case.preserve()
     same(curve, copied(curve))
@@ -188,21 +187,4 @@ def test_long_work_lets_other_threads_run(work):
         "fit": lambda: ss.NuSpline.shape_preserving(points),
         "evaluate": lambda: curve(u),
     }[work]
-    done = threading.Event()
-    seconds = []
-
-    def timed():
-        start = time.perf_counter()
-        task()
-        seconds.append(time.perf_counter() - start)
-        done.set()
-
-    thread = threading.Thread(target=timed)
-    ticks = [time.perf_counter()]
-    thread.start()
-    while not done.is_set():
-        time.sleep(0.001)
-        ticks.append(time.perf_counter())
-    thread.join()
-    # If the lock were held, this thread would have stood still nearly all the time.
-    assert max(np.diff(ticks)) < 0.5 * seconds[0]
+    assert threads.share_stood_still(task) < 0.5

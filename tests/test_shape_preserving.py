@@ -25,8 +25,12 @@ def assert_shape(curve, **options):
     assert curve.check().ok
 
 
+SHARED = cases.of_every_family([*cases.shared(), *cases.small()])
+every_family = pytest.mark.parametrize("curve_class", cases.FAMILIES, ids=lambda c: c.__name__)
+
+
 @pytest.mark.parametrize("strategy", ["growth", "fairest"])
-@pytest.mark.parametrize("case", [*cases.shared(), *cases.small()], ids=str)
+@pytest.mark.parametrize("case", SHARED, ids=str)
 def test_shared_data(case, strategy):
     assert_shape(case.preserve(strategy=strategy))
 
@@ -53,14 +57,15 @@ def ended(points, end, rng):
 
 @pytest.mark.parametrize("end", ["zero-curvature", "periodic", "circular", "tangents"])
 @pytest.mark.parametrize("family", polygons.FAMILIES)
-def test_generated_polygons(family, end):
+@every_family
+def test_generated_polygons(curve_class, family, end):
     rng = np.random.default_rng([len(family), len(end)])
     for number in range(POLYGONS):
         points = polygons.FAMILIES[family](rng, int(rng.integers(4, 40)))
         if (case := ended(points, end, rng)) is None:
             continue
         points, boundary = case
-        curve = ss.NuSpline.shape_preserving(points, boundary=boundary)
+        curve = curve_class.shape_preserving(points, boundary=boundary)
         found = of_curve(curve)
         assert found.violations == [], f"polygon {number}"
         assert curve.check().ok, f"polygon {number}"
@@ -69,11 +74,12 @@ def test_generated_polygons(family, end):
 
 @pytest.mark.parametrize("parameters", ["uniform", "centripetal", 0.75])
 @pytest.mark.parametrize("family", ["random walk", "uneven chords", "lattice walk"])
-def test_other_parametrisations(family, parameters):
+@every_family
+def test_other_parametrisations(curve_class, family, parameters):
     rng = np.random.default_rng(11)
     for _ in range(POLYGONS // 4):
         points = polygons.FAMILIES[family](rng, 20)
-        assert_shape(ss.NuSpline.shape_preserving(points, parameters))
+        assert_shape(curve_class.shape_preserving(points, parameters))
 
 
 @given(st.lists(st.tuples(*[st.integers(-2, 2)] * 3), min_size=2, max_size=9))
@@ -84,13 +90,15 @@ def test_any_lattice_polygon_is_fitted_or_refused_for_the_one_reason(points):
         with pytest.raises(ValueError, match="points"):
             ss.NuSpline.shape_preserving(points)
     else:
-        assert_shape(ss.NuSpline.shape_preserving(points))
+        for curve_class in cases.FAMILIES:
+            assert_shape(curve_class.shape_preserving(points))
 
 
-def test_exact_reversal_on_a_line():
+@every_family
+def test_exact_reversal_on_a_line(curve_class):
     """A turn by 180° calls for nothing: the plain cubic must be returned, with zero tension."""
     points = np.array([[0.0, 0, 0], [2, 0, 0], [1, 0, 0], [4, 0, 0]])
-    curve = ss.NuSpline.shape_preserving(points)
+    curve = curve_class.shape_preserving(points)
     np.testing.assert_array_equal(curve.tension, 0.0)
     np.testing.assert_array_equal(curve(np.linspace(*curve.parameters[[0, -1]], 50))[:, 1:], 0.0)
 

@@ -13,6 +13,7 @@ import sys
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -148,6 +149,69 @@ def overhead() -> Iterator[Line]:
     yield within("one scalar call", call, 2e-6)
 
 
+def at_most(what: str, ours: float, theirs: float, most: float) -> Line:
+    """Return the line for a cost, relative to another of ours, that must not exceed ``most``."""
+    ratio = ours / theirs
+    return Line(what, seconds(ours), seconds(theirs), ratio, f"≤ {most:g}× ν", ratio <= most)
+
+
+def families(sizes: list[int], queries: int) -> Iterator[Line]:
+    """Compare tension cubics and Catmull–Rom curves to ν-splines and to SciPy."""
+    for count in sizes:
+        points = polygons.gentle_track(count)
+        tension = np.random.default_rng(0).uniform(0, 3, count)
+        scale = 1 / (1 + tension)
+        u = ss.NuSpline(points).parameters
+        nu, tense, preserve, scipy = best(
+            lambda p=points, t=tension: ss.NuSpline(p, tension=t),
+            lambda p=points, s=scale: ss.TensionSpline(p, tangent_scale=s),
+            lambda p=points: ss.CatmullRom.shape_preserving(p),
+            lambda p=points, u=u: make_interp_spline(u, p, k=3),
+        )
+        yield at_most(f"TensionSpline beside NuSpline, N = {count:g}", tense, nu, 2.0)
+        what = f"CatmullRom.shape_preserving, N = {count:g}"
+        yield faster(what, preserve, scipy, 5.0)
+        yield within(f"{what}, a point", preserve / count, 60e-9)
+
+    curve = ss.TensionSpline(points, tangent_scale=scale)
+    linear, pieces = ss.NuSpline(points, tension=tension), curve.to_ppoly()
+    u = np.random.default_rng(1).uniform(*curve.parameters[[0, -1]], queries)
+    for order, query in (("sorted", np.sort(u)), ("unsorted", u)):
+        ours, plain, scipy = best(
+            lambda q=query: curve(q), lambda q=query: linear(q), lambda q=query: pieces(q)
+        )
+        what = f"evaluate in s at {queries:g} {order}, N = {count:g}"
+        yield at_most(f"{what}, beside ν", ours, plain, 3.0)
+        yield faster(f"{what}, beside PPoly", ours, scipy, 1.0)
+
+
+def collections() -> Iterator[Line]:
+    """Compare ``fit_many``, shape-preserving, to a loop of SciPy fits that preserve nothing.
+
+    Tool paths keep the shape nearly everywhere; a random walk breaks it at every second segment.
+    """
+    lengths = np.random.default_rng(0).integers(20, 91, 300)
+    offsets = np.r_[0, np.cumsum(lengths)]
+    sets = {
+        "tool paths": polygons.gentle_track(int(offsets[-1])),
+        "random walks": polygons.random_walk(np.random.default_rng(1), int(offsets[-1])),
+    }
+    for name, points in sets.items():
+        rows = [points[a:b] for a, b in pairwise(offsets)]
+        pairs = [(ss.NuSpline(row).parameters, row) for row in rows]
+
+        def loop(pairs=pairs):
+            for u, row in pairs:
+                make_interp_spline(u, row, k=3)
+
+        methods = ("nu", "tension", "catmull-rom")
+        *ours, theirs = best(
+            *(lambda m=m, p=points: ss.fit_many(p, offsets, m) for m in methods), loop
+        )
+        for method, time_taken in zip(methods, ours, strict=True):
+            yield faster(f"fit_many, {method}, 300 {name}", time_taken, theirs, 20.0)
+
+
 # The peak of a process is one number, so each fit runs in one of its own. What the interpreter,
 # the modules and the points themselves took before the fit does not count.
 MEMORY = """
@@ -201,6 +265,8 @@ def main() -> int:
         building(sizes),
         preserving(largest),
         evaluating([25, *sizes], largest),
+        families([n for n in sizes if n >= 10_000], largest),
+        collections(),
         overhead(),
         memory(largest),
     ):

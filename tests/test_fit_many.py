@@ -1,0 +1,187 @@
+"""fit_many: every curve as its class alone makes it, and every fault where it belongs."""
+
+import os
+import pickle
+import signal
+import threading
+import time
+
+import numpy as np
+import pytest
+
+import polygons
+import shapespline as ss
+import threads
+
+CLASSES = {"nu": ss.NuSpline, "tension": ss.TensionSpline, "catmull-rom": ss.CatmullRom}
+every_method = pytest.mark.parametrize("method", CLASSES)
+
+
+def collection(count=40, seed=5, dim=3):
+    """Return the points of all curves and where each begins."""
+    rng = np.random.default_rng(seed)
+    lengths = rng.integers(2, 60, size=count)
+    walks = [polygons.random_walk(rng, n, dim) for n in lengths]
+    return np.vstack(walks), np.r_[0, np.cumsum(lengths)]
+
+
+def assert_same(a, b):
+    assert type(a) is type(b)
+    np.testing.assert_array_equal(a.bezier, b.bezier)
+    np.testing.assert_array_equal(a.parameters, b.parameters)
+    np.testing.assert_array_equal(a.tension, b.tension)
+    assert a.diagnostics == b.diagnostics
+
+
+@pytest.mark.parametrize("threads", [None, 1, 3])
+@pytest.mark.parametrize("dim", [2, 3])
+@every_method
+def test_each_curve_is_that_of_its_class(method, dim, threads):
+    points, offsets = collection(dim=dim)
+    fits = ss.fit_many(points, offsets, method, threads=threads)
+    assert fits.ok
+    assert dict(fits.errors) == {}
+    assert len(fits) == len(offsets) - 1
+    for k, curve in enumerate(fits):
+        assert_same(curve, CLASSES[method].shape_preserving(points[offsets[k] : offsets[k + 1]]))
+        assert curve.check().ok
+
+
+@pytest.mark.parametrize(
+    ("method", "options"),
+    [
+        ("nu", {"strategy": "nussp", "step": 1.0, "boundary": "circular", "coplanarity": 0.1}),
+        ("tension", {"strategy": "reduction", "step": 0.7, "criteria": ["torsion", "convexity"]}),
+        ("catmull-rom", {"safety": 0.5, "continuity": "G1", "collinearity": 0.1}),
+        ("nu", {"boundary": ss.Tangents([1.0, 0, 0], [0, 1.0, 0]), "parameters": "uniform"}),
+    ],
+)
+def test_options_reach_every_curve(method, options):
+    points, offsets = collection(12, seed=9)
+    keep = np.diff(offsets) >= 3
+    rows = [points[a:b] for a, b in zip(offsets[:-1][keep], offsets[1:][keep], strict=True)]
+    points, offsets = np.vstack(rows), np.r_[0, np.cumsum([len(row) for row in rows])]
+    fits = ss.fit_many(points, offsets, method, **options)
+    assert fits.ok, fits.errors
+    for row, curve in zip(rows, fits, strict=True):
+        assert_same(curve, CLASSES[method].shape_preserving(row, **options))
+
+
+@pytest.mark.parametrize(
+    ("method", "options"),
+    [
+        ("nu", {"tension": 2.0}),
+        ("nu", {}),
+        ("tension", {"tangent_scale": 0.3}),
+        ("catmull-rom", {"tension": 0.3, "continuity": "G1"}),
+    ],
+)
+def test_given_tension(method, options):
+    points, offsets = collection(8)
+    fits = ss.fit_many(points, offsets, method, "chordal", shape_preserving=False, **options)
+    for k, curve in enumerate(fits):
+        row = points[offsets[k] : offsets[k + 1]]
+        assert_same(curve, CLASSES[method](row, "chordal", **options))
+        assert curve.diagnostics is None
+
+
+def test_given_parameters_are_those_of_all_points(rng):
+    points, offsets = collection(8)
+    u = np.cumsum(rng.uniform(0.1, 2.0, len(points)))
+    for k, curve in enumerate(ss.fit_many(points, offsets, parameters=u)):
+        np.testing.assert_array_equal(curve.parameters, u[offsets[k] : offsets[k + 1]])
+
+
+def faulty():
+    """Return a collection in which curves 1, 3 and 5 cannot be fitted."""
+    points, offsets = collection(8, seed=2)
+    points[offsets[1] + 1] = points[offsets[1]]
+    points[offsets[3] + 1, 2] = np.nan
+    offsets = np.r_[offsets[:6], offsets[5], offsets[6:]]  # a curve without points
+    return points, offsets
+
+
+@every_method
+def test_faults_are_those_of_their_curves_alone(method):
+    points, offsets = faulty()
+    fits = ss.fit_many(points, offsets, method)
+    assert sorted(fits.errors) == [1, 3, 5]
+    assert [k for k, curve in enumerate(fits) if curve is None] == [1, 3, 5]
+    assert not fits.ok
+    pieces = {1: ["curve 1", "points[1]", "points[0]"], 3: ["curve 3", "points[1", "nan"],
+              5: ["curve 5", "points", "0"]}  # fmt: skip
+    for k, error in fits.errors.items():
+        assert type(error) is ValueError
+        text = str(error).lower()
+        assert [piece for piece in pieces[k] if piece not in text] == [], text
+    for k in (0, 2, 4, 6):
+        row = points[offsets[k] : offsets[k + 1]]
+        assert_same(fits[k], CLASSES[method].shape_preserving(row))
+    with pytest.raises(ValueError, match="curve 1"):
+        ss.fit_many(points, offsets, method, errors="raise")
+    with pytest.raises(TypeError):
+        fits.errors[0] = None
+
+
+@pytest.mark.parametrize("method", ["nu", "tension"])
+def test_curves_that_do_not_converge_are_told_with_what_they_have(method):
+    points, offsets = collection(10)
+    fits = ss.fit_many(points, offsets, method, max_iterations=1)
+    assert 0 < len(fits.errors) < len(fits)
+    for k, curve in enumerate(fits):
+        if curve is not None:
+            assert curve.check().ok
+            continue
+        error = fits.errors[k]
+        assert isinstance(error, ss.ConvergenceError)
+        assert str(error).startswith(f"curve {k}: ")
+        assert isinstance(error.curve, CLASSES[method])
+        np.testing.assert_array_equal(error.curve.points, points[offsets[k] : offsets[k + 1]])
+        assert not error.report.ok
+    with pytest.raises(ss.ConvergenceError):
+        ss.fit_many(points, offsets, method, max_iterations=1, errors="raise")
+
+
+def test_the_result_is_a_sequence_that_pickles():
+    points, offsets = faulty()
+    fits = ss.fit_many(points, offsets)
+    assert fits[-1] is fits[len(fits) - 1]
+    assert fits[2:4] == (fits[2], fits[3])
+    with pytest.raises(IndexError):
+        fits[99]
+    with pytest.raises(AttributeError):
+        fits.ok = True
+    again = pickle.loads(pickle.dumps(fits))
+    assert repr(again) == repr(fits) == "<Fits: 9 curves, 3 of them failed>"
+    assert {k: str(e) for k, e in again.errors.items()} == {
+        k: str(e) for k, e in fits.errors.items()
+    }
+    assert_same(again[0], fits[0])
+
+
+def test_no_curves():
+    fits = ss.fit_many(np.empty((0, 3)), [0])
+    assert (len(fits), fits.ok) == (0, True)
+
+
+def long_collection():
+    points = np.random.default_rng(0).normal(size=(400_000, 3)).cumsum(axis=0)
+    return points, np.arange(0, 400_001, 100)
+
+
+def test_other_threads_run_meanwhile():
+    points, offsets = long_collection()
+    # The curves themselves are made under the lock, after all have been fitted.
+    assert threads.share_stood_still(lambda: ss.fit_many(points, offsets, "catmull-rom")) < 0.6
+
+
+@pytest.mark.skipif(os.name != "posix", reason="signals to the own process")
+def test_ctrl_c_ends_it():
+    points, offsets = long_collection()
+    points, offsets = np.tile(points, (5, 1)), np.arange(0, 2_000_001, 100)
+    timer = threading.Timer(0.5, os.kill, (os.getpid(), signal.SIGINT))
+    start = time.perf_counter()
+    timer.start()
+    with pytest.raises(KeyboardInterrupt):
+        ss.fit_many(points, offsets, strategy="nussp", step=1e-4, max_iterations=10**9)
+    assert time.perf_counter() - start < 10

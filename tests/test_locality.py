@@ -1,0 +1,46 @@
+"""How far a moved point reaches: the README's row on locality."""
+
+import numpy as np
+import pytest
+
+import polygons
+import shapespline as ss
+
+
+@pytest.mark.parametrize("curve", [ss.NuSpline, ss.TensionSpline], ids=lambda c: c.__name__)
+def test_a_change_fades_by_half_or_more_at_every_point(curve, rng):
+    """Uniform parameters: the system's rows are 1, 4, 1, and 2 − √3 is the ratio in the limit."""
+    points = polygons.random_walk(rng, 60)
+    moved = points.copy()
+    moved[30] += 1.0
+    u = np.arange(60.0)
+    for options in ({}, {"tension": 2.0} if curve is ss.NuSpline else {"tangent_scale": 0.5}):
+        change = curve(moved, u, **options).tangents - curve(points, u, **options).tangents
+        size = np.abs(change).max(axis=1)
+        for away in range(2, 15):
+            for side in (-1, 1):
+                assert 0 < size[30 + side * away] <= size[30 + side * (away - 1)] / 2
+
+
+@pytest.mark.parametrize("curve", [ss.NuSpline, ss.TensionSpline], ids=lambda c: c.__name__)
+def test_a_change_far_away_is_below_rounding(curve, rng):
+    points = polygons.random_walk(rng, 400)
+    moved = points.copy()
+    moved[:5] += 1.0
+    before, after = curve(points, "uniform"), curve(moved, "uniform")
+    np.testing.assert_allclose(after.tangents[100:], before.tangents[100:], atol=1e-13)
+
+
+@pytest.mark.parametrize("preserve", [False, True])
+def test_a_catmull_rom_curve_changes_on_two_segments_to_either_side(preserve, rng):
+    points = polygons.random_walk(rng, 30)
+    moved = points.copy()
+    moved[15] += 0.3
+    u = np.arange(30.0)
+    fit = ss.CatmullRom.shape_preserving if preserve else ss.CatmullRom
+    before, after = fit(points, u).bezier, fit(moved, u).bezier
+    changed = np.flatnonzero(np.any(before != after, axis=(1, 2)))
+    # Handles that are limited follow the criteria of the segments on both sides of their node.
+    reach = 3 if preserve else 2
+    assert set(changed) <= set(range(15 - reach, 15 + reach))
+    assert {14, 15} <= set(changed)
