@@ -12,25 +12,41 @@ True
 from shapespline import plot
 from shapespline._core import (
     Diagnostics,
+    MonotoneDiagnostics,
+    MonotoneQuartic,
+    MonotoneQuintic,
+    MonotoneRows,
+    MonotoneSpline,
     NuSpline,
+    PiecewisePolynomial,
     SearchStep,
     ShapeRecord,
     ShapeReport,
     SpaceCurve,
     Tangents,
     __version__,
+    bezier_like,
+    fit_many_monotone,
 )
 from shapespline._errors import ConvergenceError
 
 __all__ = [
     "ConvergenceError",
     "Diagnostics",
+    "MonotoneDiagnostics",
+    "MonotoneQuartic",
+    "MonotoneQuintic",
+    "MonotoneRows",
+    "MonotoneSpline",
     "NuSpline",
+    "PiecewisePolynomial",
     "SearchStep",
     "ShapeRecord",
     "ShapeReport",
     "SpaceCurve",
     "Tangents",
     "__version__",
+    "bezier_like",
+    "fit_many_monotone",
     "plot",
 ]

@@ -14,6 +14,7 @@ mod curve;
 mod diagnostics;
 mod error;
 mod input;
+mod monotone;
 mod nu;
 mod options;
 mod output;
@@ -40,6 +41,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<diagnostics::SearchStep>()?;
     module.add_function(wrap_pyfunction!(pickle::_curve_from_bytes, module)?)?;
     module.add_function(wrap_pyfunction!(pickle::_report_from_bytes, module)?)?;
+    monotone::register(module)?;
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
     curve::document_call(module.py())
 }
