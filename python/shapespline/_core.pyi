@@ -6,6 +6,7 @@ import pandas as pd  # type: ignore[import-untyped, unused-ignore]
 from matplotlib.axes import Axes
 from numpy.typing import ArrayLike, NDArray
 from scipy.interpolate import (  # type: ignore[import-untyped, unused-ignore]
+    BPoly,
     BSpline,
     PPoly,
 )
@@ -18,8 +19,14 @@ __version__: str
 __all__ = [
     "CatmullRom",
     "Diagnostics",
+    "MonotoneDiagnostics",
+    "MonotoneQuartic",
+    "MonotoneQuintic",
+    "MonotoneRows",
+    "MonotoneSpline",
     "NuSpline",
     "PiecewiseBezier",
+    "PiecewisePolynomial",
     "SearchStep",
     "ShapeRecord",
     "ShapeReport",
@@ -31,10 +38,14 @@ __all__ = [
     "_curve_from_bytes",
     "_curve_inflections",
     "_fit_many",
+    "_function_from_bytes",
     "_piecewise_from_bytes",
     "_polygon_inflections",
     "_polygon_shape",
     "_report_from_bytes",
+    "_rows_from_bytes",
+    "bezier_like",
+    "fit_many_monotone",
 ]
 
 _Floats = NDArray[np.float64]
@@ -400,3 +411,146 @@ def _polygon_shape(
     boundary: _Boundary | Tangents,
     tolerance: float,
 ) -> dict[str, Any]: ...
+
+_Extrapolate = Literal["linear", "clip"] | bool | None
+
+@disjoint_base
+class PiecewisePolynomial:
+    def __new__(cls) -> Self: ...
+    @property
+    def x(self) -> _Floats: ...
+    @property
+    def axis(self) -> int: ...
+    @property
+    def degree(self) -> int: ...
+    def __call__(
+        self, x: ArrayLike, nu: int = 0, extrapolate: _Extrapolate = None
+    ) -> float | _Floats: ...
+    def derivative(self, nu: int = 1) -> PiecewisePolynomial: ...
+    def antiderivative(self, nu: int = 1) -> PiecewisePolynomial: ...
+    def integrate(
+        self, a: float, b: float, extrapolate: _Extrapolate = None
+    ) -> float | _Floats: ...
+    def roots(self, extrapolate: _Extrapolate = None) -> NDArray[np.float64 | np.object_]: ...
+    def solve(
+        self, y: float, extrapolate: _Extrapolate = None
+    ) -> NDArray[np.float64 | np.object_]: ...
+    def to_bpoly(self) -> BPoly: ...
+    def to_ppoly(self) -> PPoly: ...
+    def __copy__(self) -> Self: ...
+    def __deepcopy__(self, _memo: object) -> Self: ...
+    def __reduce__(self) -> tuple[object, tuple[bytes]]: ...
+
+class MonotoneSpline(PiecewisePolynomial):
+    def __new__(cls) -> Self: ...
+    @property
+    def y(self) -> _Floats: ...
+    @property
+    def slopes(self) -> _Floats: ...
+    @property
+    def second_derivatives(self) -> _Floats: ...
+    @property
+    def alpha(self) -> _Floats: ...
+    @property
+    def beta(self) -> _Floats: ...
+    @property
+    def bending_energy(self) -> float | _Floats: ...
+    @property
+    def diagnostics(self) -> MonotoneDiagnostics | list[MonotoneDiagnostics]: ...
+    def inverse(self, y: ArrayLike) -> float | _Floats: ...
+
+@final
+class MonotoneQuartic(MonotoneSpline):
+    def __new__(
+        cls,
+        x: ArrayLike,
+        y: ArrayLike,
+        axis: int = 0,
+        *,
+        slopes: Literal["fritsch-butland"] | ArrayLike = "fritsch-butland",
+        shape: float | tuple[ArrayLike, ArrayLike] = 3.0,
+        extrapolate: _Extrapolate = None,
+    ) -> MonotoneQuartic: ...
+
+@final
+class MonotoneQuintic(MonotoneSpline):
+    def __new__(
+        cls,
+        x: ArrayLike,
+        y: ArrayLike,
+        axis: int = 0,
+        *,
+        slopes: Literal["optimal", "fritsch-butland"] | ArrayLike = "optimal",
+        fairness: Literal["bending", "parametric"] = "bending",
+        extrapolate: _Extrapolate = None,
+    ) -> MonotoneQuintic: ...
+
+@final
+class MonotoneDiagnostics:
+    def __new__(
+        cls,
+        solver: str,
+        iterations: int,
+        active: int,
+        kkt_residual: float,
+        converged: bool,
+        certified: bool,
+        energy: float,
+    ) -> Self: ...
+    @property
+    def solver(self) -> str: ...
+    @property
+    def iterations(self) -> int: ...
+    @property
+    def active(self) -> int: ...
+    @property
+    def kkt_residual(self) -> float: ...
+    @property
+    def converged(self) -> bool: ...
+    @property
+    def certified(self) -> bool: ...
+    @property
+    def energy(self) -> float: ...
+    def __eq__(self, other: object, /) -> bool: ...
+    def __ne__(self, other: object, /) -> bool: ...
+    __hash__: None  # type: ignore[assignment]
+    def __reduce__(self) -> tuple[object, tuple[str, int, int, float, bool, bool, float]]: ...
+
+def _function_from_bytes(data: bytes) -> PiecewisePolynomial: ...
+
+@final
+class MonotoneRows:
+    def __call__(self, x: ArrayLike, nu: int = 0, extrapolate: _Extrapolate = None) -> _Floats: ...
+    def __len__(self) -> int: ...
+    def __getitem__(self, row: int, /) -> MonotoneQuintic | MonotoneQuartic: ...
+    @property
+    def bending_energy(self) -> _Floats: ...
+    @property
+    def diagnostics(self) -> list[MonotoneDiagnostics]: ...
+    def __copy__(self) -> Self: ...
+    def __deepcopy__(self, _memo: object) -> Self: ...
+    def __reduce__(self) -> tuple[object, tuple[bytes]]: ...
+
+def _rows_from_bytes(data: bytes) -> MonotoneRows: ...
+def fit_many_monotone(
+    x: ArrayLike,
+    y: ArrayLike,
+    kind: Literal["quintic", "quartic"] = "quintic",
+    *,
+    offsets: Iterable[int] | None = None,
+    slopes: Literal["optimal", "fritsch-butland"] | ArrayLike | None = None,
+    fairness: Literal["bending", "parametric"] = "bending",
+    shape: float | tuple[ArrayLike, ArrayLike] = 3.0,
+    extrapolate: _Extrapolate = None,
+) -> MonotoneRows: ...
+def bezier_like(
+    degree: Literal[3, 4, 5],
+    control: ArrayLike,
+    t: ArrayLike,
+    *,
+    a: float = 3.0,
+    b: float = 3.0,
+    alpha: float | None = None,
+    beta: float | None = None,
+    nu: int = 0,
+) -> _Floats: ...

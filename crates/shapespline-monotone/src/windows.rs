@@ -67,7 +67,12 @@ pub(crate) fn optimise(data: &Data, fairness: Fairness) -> Optimum {
         let optimum = optimal::optimise(&part(data, segments.clone()), fairness);
         Window { segments, optimum }
     };
-    let windows: Vec<Window> = ranges.into_par_iter().with_min_len(2).map(solve).collect();
+    // Few segments cost less than waking threads; and a forked process has none to wake.
+    let windows: Vec<Window> = if n < 4096 {
+        ranges.into_iter().map(solve).collect()
+    } else {
+        ranges.into_par_iter().with_min_len(2).map(solve).collect()
+    };
     let mut joined: Vec<Window> = Vec::with_capacity(windows.len());
     // seams[k]: the last node that window k decides.
     let mut seams: Vec<usize> = Vec::with_capacity(windows.len());

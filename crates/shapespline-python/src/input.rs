@@ -180,13 +180,21 @@ impl<'py> FromPyObject<'_, 'py> for Query<'py> {
 
     #[inline]
     fn extract(object: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
+        Self::named("u", &object)
+    }
+}
+
+impl<'py> Query<'py> {
+    /// Of an argument with this name.
+    #[inline]
+    pub(crate) fn named(argument: &str, object: &Bound<'py, PyAny>) -> PyResult<Self> {
         if let Ok(value) = object.cast::<PyFloat>() {
             return Ok(Self::One(value.value()));
         }
         if object.cast::<PyInt>().is_ok() {
-            return float("u", &object).map(Self::One);
+            return float(argument, object).map(Self::One);
         }
-        let array = array("u", &object)?;
+        let array = array(argument, object)?;
         Ok(if array.shape().is_empty() { Self::One(array.values()[0]) } else { Self::Many(array) })
     }
 }

@@ -17,6 +17,7 @@ mod error;
 mod fit;
 mod input;
 mod many;
+mod monotone;
 mod nu;
 mod options;
 mod output;
@@ -55,6 +56,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(shape::_curve_inflections, module)?)?;
     module.add_function(wrap_pyfunction!(shape::_polygon_inflections, module)?)?;
     module.add_function(wrap_pyfunction!(shape::_polygon_shape, module)?)?;
+    monotone::register(module)?;
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
     let py = module.py();
     curve::document_call(&py.get_type::<curve::SpaceCurve>())?;

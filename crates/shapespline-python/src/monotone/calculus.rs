@@ -1,0 +1,178 @@
+//! Derivatives, integrals and solutions.
+
+use numpy::PyArray1;
+use pyo3::{prelude::*, types::PyTuple};
+use shapespline::monotone::Extrapolation;
+
+use super::{fits::Column, function::PiecewisePolynomial, options};
+
+#[pymethods]
+impl PiecewisePolynomial {
+    /// The derivative as a function.
+    ///
+    /// Parameters
+    /// ----------
+    /// nu : int
+    ///     Its order.
+    ///
+    /// Returns
+    /// -------
+    /// PiecewisePolynomial
+    ///     Outside the knots the derivative of what the function is there. Cost O(n).
+    ///
+    /// Examples
+    /// --------
+    /// >>> import shapespline as ss
+    /// >>> ss.MonotoneQuintic([0, 1, 2], [0, 2, 4]).derivative()(1.5)
+    /// 2.0
+    #[pyo3(signature = (nu=1))]
+    fn derivative(
+        &self,
+        py: Python<'_>,
+        #[pyo3(from_py_with = options::nu)] nu: usize,
+    ) -> PyResult<Py<PyAny>> {
+        // One beyond the degree all are zero.
+        let nu = nu.min(self.fits.column(0).degree() + 1);
+        Self::of(self.fits.derivative(py, nu), &self.layout).into_python(py)
+    }
+
+    /// An antiderivative as a function: zero at the first knot.
+    ///
+    /// Parameters
+    /// ----------
+    /// nu : int
+    ///     How often to integrate; at most 100.
+    ///
+    /// Returns
+    /// -------
+    /// PiecewisePolynomial
+    ///     Of a degree that is ``nu`` higher. Cost O(n).
+    ///
+    /// Examples
+    /// --------
+    /// >>> import shapespline as ss
+    /// >>> area = ss.MonotoneQuintic([0, 1, 2], [0, 1, 2]).antiderivative()
+    /// >>> round(area(2.0), 12)
+    /// 2.0
+    #[pyo3(signature = (nu=1))]
+    fn antiderivative(
+        &self,
+        py: Python<'_>,
+        #[pyo3(from_py_with = options::integrals)] nu: usize,
+    ) -> PyResult<Py<PyAny>> {
+        Self::of(self.fits.antiderivative(py, nu), &self.layout).into_python(py)
+    }
+
+    /// The definite integral from a to b.
+    ///
+    /// Parameters
+    /// ----------
+    /// a, b : float
+    ///     Finite ends, in any order, also outside the knots.
+    /// extrapolate : {None, True, False, "linear", "clip"}
+    ///     As for a call.
+    ///
+    /// Returns
+    /// -------
+    /// float or numpy.ndarray
+    ///     One number a column. Cost O(n).
+    ///
+    /// Examples
+    /// --------
+    /// >>> import shapespline as ss
+    /// >>> ss.MonotoneQuintic([0, 1, 2], [0, 1, 2]).integrate(0, 2)
+    /// 2.0
+    #[pyo3(signature = (a, b, extrapolate=None))]
+    fn integrate<'py>(
+        &self,
+        py: Python<'py>,
+        #[pyo3(from_py_with = options::a)] a: f64,
+        #[pyo3(from_py_with = options::b)] b: f64,
+        #[pyo3(from_py_with = options::extrapolate)] extrapolate: Option<Extrapolation>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let values = self.fits.map(py, |c| c.integrate(a, b, extrapolate));
+        self.each(py, values)
+    }
+
+    /// All x with f(x) = 0: `solve` for zero.
+    ///
+    /// Parameters
+    /// ----------
+    /// extrapolate : {None, True, False, "linear", "clip"}
+    ///     As for a call: roots beyond the knots count where the function is defined there.
+    ///
+    /// Returns
+    /// -------
+    /// numpy.ndarray
+    ///     As of `solve`.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import shapespline as ss
+    /// >>> ss.MonotoneQuintic([0, 1, 2], [-1, 0, 1]).roots(extrapolate=False)
+    /// array([1.])
+    #[pyo3(signature = (extrapolate=None))]
+    fn roots<'py>(
+        &self,
+        py: Python<'py>,
+        #[pyo3(from_py_with = options::extrapolate)] extrapolate: Option<Extrapolation>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        self.solutions(py, 0.0, extrapolate)
+    }
+
+    /// All x with f(x) = y.
+    ///
+    /// Parameters
+    /// ----------
+    /// y : float
+    ///     A finite value.
+    /// extrapolate : {None, True, False, "linear", "clip"}
+    ///     As for a call: solutions beyond the knots count where the function is defined there.
+    ///
+    /// Returns
+    /// -------
+    /// numpy.ndarray
+    ///     Increasing, each once. Where f equals y on a whole segment: its start, then NaN, as SciPy
+    ///     does. For many columns an array of such arrays (dtype object).
+    ///
+    /// Notes
+    /// -----
+    /// Cost O(n); a segment is looked into only where its ends do not exclude y.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import shapespline as ss
+    /// >>> ss.MonotoneQuintic([0, 1, 2, 3], [0, 1, 1, 2]).solve(1.0, extrapolate=False)
+    /// array([ 1., nan])
+    #[pyo3(signature = (y, extrapolate=None))]
+    fn solve<'py>(
+        &self,
+        py: Python<'py>,
+        #[pyo3(from_py_with = options::y)] y: f64,
+        #[pyo3(from_py_with = options::extrapolate)] extrapolate: Option<Extrapolation>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        self.solutions(py, y, extrapolate)
+    }
+}
+
+impl PiecewisePolynomial {
+    fn solutions<'py>(
+        &self,
+        py: Python<'py>,
+        y: f64,
+        mode: Option<Extrapolation>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let found = self.fits.map(py, |c: Column<'_>| c.solve(y, mode));
+        if self.layout.is_one() {
+            let only = found.into_iter().next().unwrap_or_default();
+            return Ok(PyArray1::from_vec(py, only).into_any());
+        }
+        let shape = PyTuple::new(py, self.layout.shape(&[]))?;
+        let out = py.import("numpy")?.call_method1("empty", (shape, "O"))?;
+        let flat = out.getattr("flat")?;
+        for (k, x) in found.into_iter().enumerate() {
+            flat.set_item(k, PyArray1::from_vec(py, x))?;
+        }
+        Ok(out)
+    }
+}

@@ -1,0 +1,120 @@
+//! How a monotone fit went, for Python.
+
+use pyo3::prelude::*;
+use shapespline::monotone::{MonotoneQuartic, MonotoneQuintic, Solver};
+
+/// How the optimisation of one column went. The function is monotone whatever these numbers say.
+///
+/// Attributes
+/// ----------
+/// solver : str
+///     ``"active-set"`` (quintic, slopes given), ``"interior-point"`` (quintic, optimal slopes) or
+///     ``"local"`` (quartic).
+/// iterations : int
+///     Linear solves.
+/// active : int
+///     Conditions that hold with equality; of the quartic: segments whose α, β were scaled down.
+/// kkt_residual : float
+///     Largest violation of the optimality conditions, scaled; interior point: relative duality gap.
+/// converged : bool
+///     Whether the method ended by its own criterion.
+/// certified : bool
+///     Whether Bernstein coefficients certify every segment to be monotone.
+/// energy : float
+///     The minimised energy, in the data's units.
+///
+/// Examples
+/// --------
+/// >>> import shapespline as ss
+/// >>> how = ss.MonotoneQuintic([0, 1, 2, 5], [0, 0.1, 3, 3.2]).diagnostics
+/// >>> how.solver, how.converged, how.certified
+/// ('interior-point', True, True)
+#[pyclass(module = "shapespline", frozen, get_all, eq)]
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct MonotoneDiagnostics {
+    /// The method: ``"active-set"``, ``"interior-point"`` or ``"local"``.
+    solver: String,
+    /// Linear solves of the optimisation.
+    iterations: usize,
+    /// Conditions that hold with equality.
+    active: usize,
+    /// Scaled violation of the optimality conditions, or relative duality gap.
+    kkt_residual: f64,
+    /// Whether the method ended by its own criterion.
+    converged: bool,
+    /// Whether every segment was certified to be monotone.
+    certified: bool,
+    /// The minimised energy, in the data's units.
+    energy: f64,
+}
+
+impl MonotoneDiagnostics {
+    pub(crate) fn quintic(fit: &MonotoneQuintic) -> Self {
+        let d = fit.diagnostics();
+        let solver = match d.solver {
+            Solver::ActiveSet => "active-set",
+            Solver::InteriorPoint => "interior-point",
+        };
+        Self {
+            solver: solver.to_owned(),
+            iterations: d.iterations,
+            active: d.active,
+            kkt_residual: d.kkt_residual,
+            converged: d.converged,
+            certified: d.certified,
+            energy: d.energy,
+        }
+    }
+
+    pub(crate) fn quartic(fit: &MonotoneQuartic) -> Self {
+        Self {
+            solver: "local".to_owned(),
+            iterations: 0,
+            active: fit.scale().iter().filter(|s| **s < 1.0).count(),
+            kkt_residual: 0.0,
+            converged: true,
+            certified: true,
+            energy: fit.bending_energy(),
+        }
+    }
+}
+
+type Fields = (String, usize, usize, f64, bool, bool, f64);
+
+#[pymethods]
+impl MonotoneDiagnostics {
+    #[new]
+    fn new(
+        solver: String,
+        iterations: usize,
+        active: usize,
+        kkt_residual: f64,
+        converged: bool,
+        certified: bool,
+        energy: f64,
+    ) -> Self {
+        Self { solver, iterations, active, kkt_residual, converged, certified, energy }
+    }
+
+    fn __repr__(&self) -> String {
+        let truth = |value| if value { "True" } else { "False" };
+        format!(
+            "MonotoneDiagnostics(solver='{}', iterations={}, active={}, kkt_residual={:e}, \
+             converged={}, certified={}, energy={})",
+            self.solver,
+            self.iterations,
+            self.active,
+            self.kkt_residual,
+            truth(self.converged),
+            truth(self.certified),
+            self.energy,
+        )
+    }
+
+    fn __reduce__(slf: &Bound<'_, Self>) -> (Py<PyAny>, Fields) {
+        let d = slf.get().clone();
+        let fields =
+            (d.solver, d.iterations, d.active, d.kkt_residual, d.converged, d.certified, d.energy);
+        (slf.get_type().into_any().unbind(), fields)
+    }
+}

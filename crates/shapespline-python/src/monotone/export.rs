@@ -1,0 +1,86 @@
+//! The same function as SciPy's objects.
+
+use pyo3::{
+    prelude::*,
+    types::{IntoPyDict, PyDict},
+};
+use shapespline::monotone::Extrapolation;
+
+use super::function::PiecewisePolynomial;
+use crate::output::{FloatArray, shaped};
+
+impl PiecewisePolynomial {
+    fn scipy_options<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let on = self.fits.column(0).extrapolation() == Extrapolation::Polynomial;
+        [("extrapolate", on)].into_py_dict(py)
+    }
+
+    /// Bernstein coefficients with SciPy's two axes (degree + 1, segments) in place of ours.
+    fn bernstein<'py>(&self, py: Python<'py>) -> PyResult<FloatArray<'py>> {
+        let first = self.fits.column(0);
+        let (order, segments) = (first.degree() + 1, first.x().len() - 1);
+        let mut values = vec![0.0; self.fits.len() * order * segments];
+        for (column, out) in self.fits.columns().zip(values.chunks_exact_mut(order * segments)) {
+            for (i, piece) in column.coefficients().chunks_exact(order).enumerate() {
+                for (k, c) in piece.iter().enumerate() {
+                    out[k * segments + i] = *c;
+                }
+            }
+        }
+        let values = self.layout.join(values, order * segments);
+        shaped(py, values, &self.layout.shape(&[order, segments]))
+    }
+}
+
+#[pymethods]
+impl PiecewisePolynomial {
+    /// The function as a piecewise polynomial of SciPy in Bernstein form.
+    ///
+    /// Returns
+    /// -------
+    /// scipy.interpolate.BPoly
+    ///     With the same ``axis``. Outside the knots it is the end polynomial where the function is,
+    ///     else NaN (SciPy knows no tangent line and no end value).
+    ///
+    /// Raises
+    /// ------
+    /// ModuleNotFoundError
+    ///     If SciPy is not installed (``pip install "shapespline[scipy]"``).
+    ///
+    /// Examples
+    /// --------
+    /// >>> import shapespline as ss
+    /// >>> float(ss.MonotoneQuintic([0, 1, 2], [0, 1, 2]).to_bpoly()(1.5))
+    /// 1.5
+    fn to_bpoly<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let class = py.import("scipy.interpolate")?.getattr("BPoly")?;
+        let options = self.scipy_options(py)?;
+        options.set_item("axis", self.layout.axis())?;
+        let x = self.fits.column(0).x().to_vec();
+        let n = x.len();
+        class.call((self.bernstein(py)?, shaped(py, x, &[n])?), Some(&options))
+    }
+
+    /// The function as a piecewise polynomial of SciPy in the power basis.
+    ///
+    /// Returns
+    /// -------
+    /// scipy.interpolate.PPoly
+    ///     Converted by SciPy from `to_bpoly`.
+    ///
+    /// Raises
+    /// ------
+    /// ModuleNotFoundError
+    ///     If SciPy is not installed (``pip install "shapespline[scipy]"``).
+    ///
+    /// Examples
+    /// --------
+    /// >>> import shapespline as ss
+    /// >>> float(ss.MonotoneQuintic([0, 1, 2], [0, 1, 2]).to_ppoly()(1.5))
+    /// 1.5
+    fn to_ppoly<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let class = py.import("scipy.interpolate")?.getattr("PPoly")?;
+        let options = self.scipy_options(py)?;
+        class.call_method("from_bernstein_basis", (self.to_bpoly(py)?,), Some(&options))
+    }
+}

@@ -1,0 +1,172 @@
+//! One function a column, of any of the three kinds.
+
+use pyo3::prelude::*;
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+use shapespline::monotone::{
+    Extrapolation, MonotoneQuartic, MonotoneQuintic, MonotoneSpline, PiecewisePolynomial,
+};
+
+use crate::{output::zeros, work::detached};
+
+/// From so many numbers on, columns are shared out over threads (the size from which `detached` has a pool).
+pub(crate) const PARALLEL: usize = 8192;
+
+/// Columns of one kind; at least one.
+#[derive(Debug, Serialize, Deserialize)]
+pub(crate) enum Fits {
+    Quartic(Vec<MonotoneQuartic>),
+    Quintic(Vec<MonotoneQuintic>),
+    Pieces(Vec<PiecewisePolynomial>),
+}
+
+/// One column.
+#[derive(Clone, Copy)]
+pub(crate) enum Column<'a> {
+    Spline(&'a MonotoneSpline),
+    Pieces(&'a PiecewisePolynomial),
+}
+
+/// Calls a method that both kinds have.
+macro_rules! both {
+    ($column:expr, $f:ident => $body:expr) => {
+        match $column {
+            Column::Spline($f) => $body,
+            Column::Pieces($f) => $body,
+        }
+    };
+}
+
+impl Column<'_> {
+    pub(crate) fn x(&self) -> &[f64] {
+        both!(self, f => f.x())
+    }
+    pub(crate) fn degree(&self) -> usize {
+        both!(self, f => f.degree())
+    }
+    pub(crate) fn extrapolation(&self) -> Extrapolation {
+        both!(self, f => f.extrapolation())
+    }
+    pub(crate) fn coefficients(&self) -> Vec<f64> {
+        match self {
+            Self::Spline(f) => f.bernstein_coefficients(),
+            Self::Pieces(f) => f.coefficients().to_vec(),
+        }
+    }
+    #[inline]
+    pub(crate) fn evaluate(&self, x: f64, nu: usize, mode: Option<Extrapolation>) -> f64 {
+        both!(self, f => f.evaluate(x, nu, mode))
+    }
+    fn evaluate_into(&self, x: &[f64], nu: usize, mode: Option<Extrapolation>, out: &mut [f64]) {
+        both!(self, f => f.evaluate_into(x, nu, mode, out));
+    }
+    fn derivative(&self, nu: usize) -> PiecewisePolynomial {
+        both!(self, f => f.derivative(nu))
+    }
+    fn antiderivative(&self, nu: usize) -> PiecewisePolynomial {
+        both!(self, f => f.antiderivative(nu))
+    }
+    pub(crate) fn integrate(&self, a: f64, b: f64, mode: Option<Extrapolation>) -> f64 {
+        both!(self, f => f.integrate(a, b, mode))
+    }
+    pub(crate) fn solve(&self, y: f64, mode: Option<Extrapolation>) -> Vec<f64> {
+        both!(self, f => f.solve(y, mode))
+    }
+}
+
+impl Fits {
+    pub(crate) fn len(&self) -> usize {
+        match self {
+            Self::Quartic(fits) => fits.len(),
+            Self::Quintic(fits) => fits.len(),
+            Self::Pieces(fits) => fits.len(),
+        }
+    }
+
+    #[inline]
+    pub(crate) fn column(&self, k: usize) -> Column<'_> {
+        match self {
+            Self::Quartic(fits) => Column::Spline(fits[k].spline()),
+            Self::Quintic(fits) => Column::Spline(fits[k].spline()),
+            Self::Pieces(fits) => Column::Pieces(&fits[k]),
+        }
+    }
+
+    pub(crate) fn columns(&self) -> impl Iterator<Item = Column<'_>> {
+        (0..self.len()).map(|k| self.column(k))
+    }
+
+    /// Column k alone.
+    pub(crate) fn only(&self, k: usize) -> Self {
+        match self {
+            Self::Quartic(fits) => Self::Quartic(vec![fits[k].clone()]),
+            Self::Quintic(fits) => Self::Quintic(vec![fits[k].clone()]),
+            Self::Pieces(fits) => Self::Pieces(vec![fits[k].clone()]),
+        }
+    }
+
+    /// Numbers that describe all columns: the size of work on all of them.
+    pub(crate) fn size(&self) -> usize {
+        self.columns().map(|c| c.x().len()).sum()
+    }
+
+    /// `work` on every column, in parallel where there is much of it.
+    pub(crate) fn map<T: Send>(
+        &self,
+        py: Python<'_>,
+        work: impl Fn(Column<'_>) -> T + Send + Sync,
+    ) -> Vec<T> {
+        let size = self.size();
+        detached(py, size, || {
+            if size < PARALLEL || self.len() == 1 {
+                self.columns().map(&work).collect()
+            } else {
+                (0..self.len()).into_par_iter().map(|k| work(self.column(k))).collect()
+            }
+        })
+    }
+
+    pub(crate) fn derivative(&self, py: Python<'_>, nu: usize) -> Self {
+        Self::Pieces(self.map(py, |c| c.derivative(nu)))
+    }
+
+    pub(crate) fn antiderivative(&self, py: Python<'_>, nu: usize) -> Self {
+        Self::Pieces(self.map(py, |c| c.antiderivative(nu)))
+    }
+
+    /// Every column at the queries `of(k)`, column after column, each with `each` of them.
+    pub(crate) fn evaluate<'q>(
+        &self,
+        py: Python<'_>,
+        each: usize,
+        of: impl Fn(usize) -> &'q [f64] + Send + Sync,
+        nu: usize,
+        mode: Option<Extrapolation>,
+    ) -> PyResult<Vec<f64>> {
+        let mut out = zeros(self.len(), each)?;
+        if out.is_empty() {
+            return Ok(out);
+        }
+        let size = out.len();
+        detached(py, size, || {
+            let work = |(k, row): (usize, &mut [f64])| {
+                self.column(k).evaluate_into(of(k), nu, mode, row);
+            };
+            if size < PARALLEL || self.len() == 1 {
+                out.chunks_mut(each).enumerate().for_each(work);
+            } else {
+                out.par_chunks_mut(each).enumerate().for_each(work);
+            }
+        });
+        Ok(out)
+    }
+
+    /// Whether what was read back can be asked anything without a panic.
+    pub(crate) fn is_sound(&self) -> bool {
+        let scales = match self {
+            Self::Quartic(fits) => fits.iter().all(|f| f.scale().len() + 1 == f.x().len()),
+            _ => true,
+        };
+        self.len() > 0 && scales
+    }
+}

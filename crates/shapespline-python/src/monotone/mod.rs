@@ -1,0 +1,40 @@
+//!
+//! [`function`] is what every function can do, [`spline`] what the interpolants add, [`families`] their
+//! constructors; [`layout`] brings arrays with an axis to columns and back.
+
+use pyo3::{PyClass, prelude::*};
+
+mod bezier_like;
+mod calculus;
+mod diagnostics;
+mod export;
+mod families;
+mod fits;
+mod function;
+mod layout;
+mod options;
+mod rows;
+mod spline;
+
+/// Adds the classes and functions of this part to the module.
+pub(crate) fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    module.add_class::<function::PiecewisePolynomial>()?;
+    module.add_class::<spline::MonotoneSpline>()?;
+    module.add_class::<families::MonotoneQuartic>()?;
+    module.add_class::<families::MonotoneQuintic>()?;
+    module.add_class::<diagnostics::MonotoneDiagnostics>()?;
+    module.add_class::<rows::MonotoneRows>()?;
+    module.add_function(wrap_pyfunction!(function::_function_from_bytes, module)?)?;
+    module.add_function(wrap_pyfunction!(rows::_rows_from_bytes, module)?)?;
+    module.add_function(wrap_pyfunction!(rows::fit_many_monotone, module)?)?;
+    module.add_function(wrap_pyfunction!(bezier_like::bezier_like, module)?)?;
+    document_call::<function::PiecewisePolynomial>(module.py())?;
+    document_call::<rows::MonotoneRows>(module.py())
+}
+
+/// Makes calling an object a documented method: pyo3's slot would show `(*args, **kwargs)`.
+fn document_call<C: PyClass>(py: Python<'_>) -> PyResult<()> {
+    let class = py.get_type::<C>();
+    class.setattr("__call__", class.getattr("_call")?)?;
+    class.delattr("_call")
+}
