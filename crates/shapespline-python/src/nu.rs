@@ -98,16 +98,18 @@ impl NuSpline {
     /// criteria : str or iterable of str, optional
     ///     What to keep: any of ``"convexity"``, ``"inflection"``, ``"torsion"``, ``"coplanarity"``
     ///     and ``"collinearity"``; default all of them.
-    /// strategy : {"fairest", "growth", "nussp"}
+    /// strategy : {"fairest", "growth", "nussp", "reduction"}
     ///     ``"nussp"`` adds ``step`` (the published algorithm); ``"growth"`` doubles the tension;
     ///     ``"fairest"`` doubles and then lowers every run of tension until none can be lowered by
-    ///     more than 1 % without breaking a criterion.
+    ///     more than 1 % without breaking a criterion; ``"reduction"`` multiplies 1/(1 + ν) by
+    ///     ``step``.
     /// step : float
     ///     What ``"nussp"`` adds, and what doubling starts from; positive.
     /// coplanarity, collinearity, tolerance : float
     ///     As for the method ``check``.
     /// max_iterations : int, optional
-    ///     Largest number of checks while tension is raised; default 10000 for ``"nussp"``, else 200.
+    ///     Largest number of checks while tension is raised; default 10000 for ``"nussp"`` and
+    ///     ``"reduction"``, else 200.
     ///
     /// Returns
     /// -------
