@@ -1,6 +1,7 @@
 """Settings and fixtures that all tests share."""
 
 import os
+import signal
 
 import hypothesis
 import numpy as np
@@ -31,3 +32,11 @@ def pytest_terminal_summary(terminalreporter) -> None:
     for table in _tables:
         terminalreporter.write_line("")
         terminalreporter.write_line(table)
+
+
+@pytest.fixture(autouse=True, scope="session")
+def interrupts_are_heard():
+    """A shell starts background jobs with SIGINT ignored; Python then never raises it."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
