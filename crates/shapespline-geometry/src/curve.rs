@@ -22,18 +22,12 @@ pub trait Curve: Send + Sync {
     /// Derivative of order `order` (0: position) with respect to `u`.
     fn evaluate(&self, u: f64, order: usize, side: Side) -> DVec3;
 
-    /// Derivatives of order `order` at many parameters, written to `out` row by row, with as many
-    /// columns as the curve has coordinates.
+    /// Derivatives of order `order` at many parameters, row by row, with as many columns as the curve
+    /// has coordinates.
     ///
     /// # Errors
-    /// `out` of another length than parameters times coordinates; an order the curve does not have.
-    fn evaluate_many(
-        &self,
-        u: &[f64],
-        order: usize,
-        side: Side,
-        out: &mut [f64],
-    ) -> Result<(), InputError>;
+    /// An order the curve does not have.
+    fn evaluate_many(&self, u: &[f64], order: usize, side: Side) -> Result<Vec<f64>, InputError>;
 
     /// First, second and third derivatives with respect to `u`.
     fn derivatives(&self, u: f64, side: Side) -> [DVec3; 3] {

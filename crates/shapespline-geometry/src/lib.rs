@@ -15,6 +15,7 @@
 //! spline curves*.
 
 mod arc_length;
+mod batch;
 pub mod bernstein;
 mod boundary;
 mod bspline;

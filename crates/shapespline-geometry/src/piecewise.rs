@@ -3,10 +3,11 @@
 use std::sync::OnceLock;
 
 use glam::DVec3;
-use rayon::prelude::*;
 
 use crate::{
-    CubicSegment, Curve, DataPolygon, Dimension, InputError, Locator, Side, locate::search,
+    CubicSegment, Curve, DataPolygon, Dimension, InputError, Locator, Side,
+    batch::{Evaluate, Locals},
+    locate::search,
     parametrization::check_increasing,
 };
 
@@ -58,15 +59,6 @@ impl PartialEq for PiecewiseCubic {
             && (self.dimension, self.domain) == (other.dimension, other.domain)
     }
 }
-
-/// Queries are evaluated in blocks of this many, each block on one thread.
-const BLOCK: usize = 16_384;
-
-/// Queries whose segments are found before any of them is evaluated.
-const STRIDE: usize = 64;
-
-/// `[1 − t, t]` of that many.
-pub(crate) type Locals = [[f64; 2]; STRIDE];
 
 impl PiecewiseCubic {
     /// Curve from knots, points and the end legs of each segment.
@@ -190,143 +182,38 @@ impl PiecewiseCubic {
     #[must_use]
     pub fn evaluate(&self, u: f64, order: usize, side: Side) -> DVec3 {
         let (i, t) = self.locate(u, side);
+        let t = [1.0 - t, t];
         match order {
-            0 => self.derivative::<0>(i, t),
-            1 => self.derivative::<1>(i, t),
-            2 => self.derivative::<2>(i, t),
-            3 => self.derivative::<3>(i, t),
-            _ => self.derivative::<4>(i, t),
+            0 => self.derivative_at::<0>(i, t),
+            1 => self.derivative_at::<1>(i, t),
+            2 => self.derivative_at::<2>(i, t),
+            3 => self.derivative_at::<3>(i, t),
+            _ => self.derivative_at::<4>(i, t),
         }
     }
 
-    /// Derivatives of order `order` at many parameters, written to `out` row by row, with as many
-    /// columns as the curve has coordinates.
+    /// Derivatives of order `order` at many parameters, row by row, with as many columns as the curve
+    /// has coordinates.
     ///
     /// Sorted parameters cost O(1) each, unsorted ones O(1) through a bucket table (made once, when
     /// there are many); large batches run on all threads.
-    ///
-    /// # Errors
-    /// `out` of another length than parameters times coordinates.
-    pub fn evaluate_many(
-        &self,
-        u: &[f64],
-        order: usize,
-        side: Side,
-        out: &mut [f64],
-    ) -> Result<(), InputError> {
-        let local = |segments: &[usize], u: &[f64], local: &mut Locals| {
-            for ((&i, &u), local) in segments.iter().zip(u).zip(local) {
-                let t = self.local(i, u);
-                *local = [1.0 - t, t];
-            }
-        };
+    #[must_use]
+    pub fn evaluate_many(&self, u: &[f64], order: usize, side: Side) -> Vec<f64> {
         match order {
-            0 => self.fill_with(u, side, out, local, |i, l| self.derivative_at::<0>(i, l)),
-            1 => self.fill_with(u, side, out, local, |i, l| self.derivative_at::<1>(i, l)),
-            2 => self.fill_with(u, side, out, local, |i, l| self.derivative_at::<2>(i, l)),
-            3 => self.fill_with(u, side, out, local, |i, l| self.derivative_at::<3>(i, l)),
-            _ => self.fill_with(u, side, out, local, |i, l| self.derivative_at::<4>(i, l)),
+            0 => self.values::<0>(u, side),
+            1 => self.values::<1>(u, side),
+            2 => self.values::<2>(u, side),
+            3 => self.values::<3>(u, side),
+            _ => self.values::<4>(u, side),
         }
     }
 
-    /// Finds the segment of every parameter, has `local` make `[1 − t, t]` of segments and (wrapped)
-    /// parameters, some at a time, and writes what `value` makes of segment and `[1 − t, t]`, row by
-    /// row: the one way to many values, whatever the parameter means.
-    pub(crate) fn fill_with(
-        &self,
-        u: &[f64],
-        side: Side,
-        out: &mut [f64],
-        local: impl Fn(&[usize], &[f64], &mut Locals) + Sync,
-        value: impl Fn(usize, [f64; 2]) -> DVec3 + Sync,
-    ) -> Result<(), InputError> {
-        let columns = self.dimension.len();
-        if out.len() != u.len() * columns {
-            let (expected, found) = (u.len() * columns, out.len());
-            let per = "one for each parameter and coordinate";
-            return Err(InputError::Length { argument: "out", expected, found, per });
-        }
-        match self.dimension {
-            Dimension::Two => self.fill::<2>(u, side, out, local, value),
-            Dimension::Three => self.fill::<3>(u, side, out, local, value),
-        }
-        Ok(())
-    }
-
-    fn fill<const COLUMNS: usize>(
-        &self,
-        u: &[f64],
-        side: Side,
-        out: &mut [f64],
-        local: impl Fn(&[usize], &[f64], &mut Locals) + Sync,
-        value: impl Fn(usize, [f64; 2]) -> DVec3 + Sync,
-    ) {
-        // A table costs about as much to make as it saves on one query a segment.
-        let table = if u.len() >= self.segments().max(64) { self.table() } else { None };
-        let block = |u: &[f64], out: &mut [f64]| {
-            let ascending = u.is_sorted();
-            let (mut segments, mut hint) = ([0; STRIDE], 0);
-            let (mut wrapped, mut locals) = ([0.0; STRIDE], [[0.0; 2]; STRIDE]);
-            for (u, out) in u.chunks(STRIDE).zip(out.chunks_mut(STRIDE * COLUMNS)) {
-                // First all segments, then all values: what the loops load from memory depends on
-                // no branch of the iteration before, so that cache misses overlap.
-                for ((&u, segment), wrapped) in u.iter().zip(&mut segments).zip(&mut wrapped) {
-                    *wrapped = self.wrap(u);
-                    *segment = match table {
-                        Some(table) if !ascending => table.segment(&self.knots, *wrapped),
-                        _ => self.near(hint, *wrapped),
-                    };
-                    hint = *segment;
-                }
-                local(&segments[..u.len()], &wrapped[..u.len()], &mut locals);
-                for ((&l, &i), row) in
-                    locals.iter().zip(&segments).zip(out.chunks_exact_mut(COLUMNS))
-                {
-                    row.copy_from_slice(&value(i, l).to_array()[..COLUMNS]);
-                }
-            }
-        };
-        let left = |u: &[f64], out: &mut [f64]| {
-            let mut locals = [[0.0; 2]; STRIDE];
-            for (&u, row) in u.iter().zip(out.chunks_exact_mut(COLUMNS)) {
-                let (i, u) = self.find(u, Side::Left);
-                local(&[i], &[u], &mut locals);
-                row.copy_from_slice(&value(i, locals[0]).to_array()[..COLUMNS]);
-            }
-        };
-        let one = |u: &[f64], out: &mut [f64]| match side {
-            Side::Right => block(u, out),
-            Side::Left => left(u, out),
-        };
-        if u.len() <= 2 * BLOCK {
-            one(u, out);
-        } else {
-            u.par_chunks(BLOCK)
-                .zip(out.par_chunks_mut(BLOCK * COLUMNS))
-                .for_each(|(u, out)| one(u, out));
-        }
-    }
-
-    fn table(&self) -> Option<&Locator> {
+    pub(crate) fn table(&self) -> Option<&Locator> {
         self.locator.get_or_init(|| Locator::new(&self.knots)).as_ref()
     }
 
-    /// Segment of `u`: the one before, or the next, as sorted queries have it, else by search.
     #[inline]
-    fn near(&self, hint: usize, u: f64) -> usize {
-        if self.knots[hint] <= u {
-            if u < self.knots[hint + 1] {
-                return hint;
-            }
-            if hint + 1 < self.segments() && u < self.knots[hint + 2] {
-                return hint + 1;
-            }
-        }
-        search(&self.knots, u, Side::Right)
-    }
-
-    #[inline]
-    fn wrap(&self, u: f64) -> f64 {
+    pub(crate) fn wrap(&self, u: f64) -> f64 {
         let (first, last) = (self.knots[0], self.knots[self.knots.len() - 1]);
         if self.domain == Domain::Closed && (u < first || u > last) {
             first + (u - first).rem_euclid(last - first)
@@ -340,14 +227,8 @@ impl PiecewiseCubic {
         (u - self.knots[i]) / (self.knots[i + 1] - self.knots[i])
     }
 
-    /// Derivative with respect to `u` of a segment at local `t`, as weights of end points and legs.
-    #[inline]
-    fn derivative<const ORDER: usize>(&self, i: usize, t: f64) -> DVec3 {
-        self.derivative_at::<ORDER>(i, [1.0 - t, t])
-    }
-
-    /// The same at `[1 − t, t]`, for callers who know `1 − t` better than the difference does.
-    #[inline]
+    /// Derivative with respect to `u` of a segment at `[1 − t, t]`, as weights of end points and legs.
+    #[inline(always)]
     pub(crate) fn derivative_at<const ORDER: usize>(&self, i: usize, [s, t]: [f64; 2]) -> DVec3 {
         let (p, q, [a, c]) = (self.points[i], self.points[i + 1], self.legs[i]);
         if ORDER == 0 {
@@ -371,6 +252,25 @@ impl PiecewiseCubic {
     }
 }
 
+impl Evaluate for PiecewiseCubic {
+    fn image(&self) -> &PiecewiseCubic {
+        self
+    }
+
+    #[inline(always)]
+    fn locals(&self, segment: impl Fn(usize) -> usize, u: &[f64], out: &mut Locals) {
+        for (j, (&u, out)) in u.iter().zip(out).enumerate() {
+            let t = self.local(segment(j), u);
+            *out = [1.0 - t, t];
+        }
+    }
+
+    #[inline(always)]
+    fn derivative<const ORDER: usize>(&self, segment: usize, local: [f64; 2]) -> DVec3 {
+        self.derivative_at::<ORDER>(segment, local)
+    }
+}
+
 impl Curve for PiecewiseCubic {
     fn cubic(&self) -> &PiecewiseCubic {
         self
@@ -388,14 +288,8 @@ impl Curve for PiecewiseCubic {
         self.evaluate(u, order, side)
     }
 
-    fn evaluate_many(
-        &self,
-        u: &[f64],
-        order: usize,
-        side: Side,
-        out: &mut [f64],
-    ) -> Result<(), InputError> {
-        self.evaluate_many(u, order, side, out)
+    fn evaluate_many(&self, u: &[f64], order: usize, side: Side) -> Result<Vec<f64>, InputError> {
+        Ok(self.evaluate_many(u, order, side))
     }
 }
 
@@ -450,8 +344,8 @@ mod tests {
                     _ => DVec3::ZERO,
                 };
                 for side in [Side::Left, Side::Right] {
-                    let mut out = vec![f64::NAN; queries.len() * 3];
-                    curve.evaluate_many(queries, order, side, &mut out).unwrap();
+                    let out = curve.evaluate_many(queries, order, side);
+                    assert_eq!(out.len(), 3 * queries.len());
                     for (&u, row) in queries.iter().zip(out.chunks(3)) {
                         let value = DVec3::from_slice(row);
                         assert!((value - expected(u)).length() < 2e-11, "{order} {u} {value}");

@@ -3,7 +3,9 @@
 use glam::DVec3;
 
 use crate::{
-    Curve, InputError, MonotoneCubic, PiecewiseCubic, Side, monotone::Batch, piecewise::Locals,
+    Curve, InputError, MonotoneCubic, PiecewiseCubic, Side,
+    batch::{Evaluate, Locals},
+    monotone::Batch,
 };
 
 /// The image of a piecewise cubic `C`, run through as `Q(s) = C(t(s))`, where on each segment
@@ -63,21 +65,9 @@ impl ReparametrizedCubic {
         self.map(i).solve([(s - knots[i]) * reciprocal, (knots[i + 1] - s) * reciprocal])
     }
 
-    /// The same for some parameters at once.
-    fn locals(&self, segments: &[usize], parameters: &[f64], out: &mut Locals) {
-        let mut batch = Batch::default();
-        let knots = self.cubic.knots();
-        for (j, (&i, &s)) in segments.iter().zip(parameters).enumerate() {
-            let reciprocal = 1.0 / (knots[i + 1] - knots[i]);
-            let value = [(s - knots[i]) * reciprocal, (knots[i + 1] - s) * reciprocal];
-            batch.put(j, self.map(i), value);
-        }
-        batch.solve(out);
-    }
-
     /// Derivative with respect to `s` on segment `i` at `[1 − t, t]`, by the chain rule.
-    #[inline]
-    fn derivative<const ORDER: usize>(&self, i: usize, [s, t]: [f64; 2]) -> DVec3 {
+    #[inline(always)]
+    fn derivative_at<const ORDER: usize>(&self, i: usize, [s, t]: [f64; 2]) -> DVec3 {
         if ORDER == 0 {
             return self.cubic.derivative_at::<0>(i, [s, t]);
         }
@@ -108,6 +98,30 @@ impl ReparametrizedCubic {
     }
 }
 
+impl Evaluate for ReparametrizedCubic {
+    fn image(&self) -> &PiecewiseCubic {
+        &self.cubic
+    }
+
+    #[inline(always)]
+    fn locals(&self, segment: impl Fn(usize) -> usize, u: &[f64], out: &mut Locals) {
+        let mut batch = Batch::default();
+        let knots = self.cubic.knots();
+        for (j, &s) in u.iter().enumerate() {
+            let i = segment(j);
+            let reciprocal = 1.0 / (knots[i + 1] - knots[i]);
+            let value = [(s - knots[i]) * reciprocal, (knots[i + 1] - s) * reciprocal];
+            batch.put(j, self.map(i), value);
+        }
+        batch.solve(out);
+    }
+
+    #[inline(always)]
+    fn derivative<const ORDER: usize>(&self, segment: usize, local: [f64; 2]) -> DVec3 {
+        self.derivative_at::<ORDER>(segment, local)
+    }
+}
+
 impl Curve for ReparametrizedCubic {
     fn cubic(&self) -> &PiecewiseCubic {
         &self.cubic
@@ -127,28 +141,20 @@ impl Curve for ReparametrizedCubic {
         let (i, u) = self.cubic.find(u, side);
         let u = self.local(i, u);
         match order {
-            0 => self.derivative::<0>(i, u),
-            1 => self.derivative::<1>(i, u),
-            2 => self.derivative::<2>(i, u),
-            3 => self.derivative::<3>(i, u),
+            0 => self.derivative_at::<0>(i, u),
+            1 => self.derivative_at::<1>(i, u),
+            2 => self.derivative_at::<2>(i, u),
+            3 => self.derivative_at::<3>(i, u),
             _ => DVec3::NAN,
         }
     }
 
-    fn evaluate_many(
-        &self,
-        u: &[f64],
-        order: usize,
-        side: Side,
-        out: &mut [f64],
-    ) -> Result<(), InputError> {
-        let local = |i: &[usize], u: &[f64], out: &mut Locals| self.locals(i, u, out);
-        let cubic = &self.cubic;
+    fn evaluate_many(&self, u: &[f64], order: usize, side: Side) -> Result<Vec<f64>, InputError> {
         match order {
-            0 => cubic.fill_with(u, side, out, local, |i, l| self.derivative::<0>(i, l)),
-            1 => cubic.fill_with(u, side, out, local, |i, l| self.derivative::<1>(i, l)),
-            2 => cubic.fill_with(u, side, out, local, |i, l| self.derivative::<2>(i, l)),
-            ORDERS => cubic.fill_with(u, side, out, local, |i, l| self.derivative::<3>(i, l)),
+            0 => Ok(self.values::<0>(u, side)),
+            1 => Ok(self.values::<1>(u, side)),
+            2 => Ok(self.values::<2>(u, side)),
+            ORDERS => Ok(self.values::<3>(u, side)),
             _ => Err(InputError::Scalar {
                 argument: "nu",
                 value: order as f64,
@@ -195,8 +201,7 @@ mod tests {
         let step = 1e-5;
         let queries: Vec<f64> = (1..400).map(|k| 0.01 * f64::from(k) + 0.003).collect();
         for order in 0..=3 {
-            let mut out = vec![0.0; 3 * queries.len()];
-            curve.evaluate_many(&queries, order, Side::Right, &mut out).unwrap();
+            let out = curve.evaluate_many(&queries, order, Side::Right).unwrap();
             for (&u, row) in queries.iter().zip(out.chunks(3)) {
                 let value = curve.evaluate(u, order, Side::Right);
                 assert_eq!(value, DVec3::from_slice(row));
@@ -209,7 +214,7 @@ mod tests {
                 assert!((value - difference).length() < 2e-4 * size * size, "{u} {order}");
             }
         }
-        assert!(curve.evaluate_many(&[0.0], 4, Side::Right, &mut [0.0; 3]).is_err());
+        assert!(curve.evaluate_many(&[0.0], 4, Side::Right).is_err());
     }
 
     #[test]

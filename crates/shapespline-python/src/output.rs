@@ -6,14 +6,18 @@ use shapespline::geometry::{DVec3, Dimension};
 
 pub(crate) type FloatArray<'py> = Bound<'py, PyArrayDyn<f64>>;
 
-/// Zeros to be filled, or `MemoryError`: a size that a user asks for must not end the process.
-pub(crate) fn zeros(count: usize, columns: usize) -> PyResult<Vec<f64>> {
+/// `MemoryError` where so many numbers have no room: a size that a user asks for must not end the
+/// process.
+pub(crate) fn room(count: usize, columns: usize) -> PyResult<usize> {
     let total = count.checked_mul(columns).filter(|n| *n <= isize::MAX as usize / 16);
     let reserved = total.and_then(|n| Vec::<f64>::new().try_reserve_exact(n).ok().map(|()| n));
-    match reserved {
-        Some(n) => Ok(vec![0.0; n]),
-        None => Err(PyMemoryError::new_err(format!("no room for {count} × {columns} numbers"))),
-    }
+    reserved
+        .ok_or_else(|| PyMemoryError::new_err(format!("no room for {count} × {columns} numbers")))
+}
+
+/// Zeros to be filled, where there is room.
+pub(crate) fn zeros(count: usize, columns: usize) -> PyResult<Vec<f64>> {
+    Ok(vec![0.0; room(count, columns)?])
 }
 
 /// One vector: shape (dim,).

@@ -61,13 +61,12 @@ fn main() -> Result<(), Box<dyn Error>> {
     let spline = TensionSpline::new(polygon.clone(), TangentScale::Nodes(&lambda))?;
     let (curve, knots) = (spline.curve(), polygon.parameters());
     let last = knots[n - 1];
-    let mut out = vec![0.0; 3 * n];
     for (name, stride) in [("sorted", 1), ("unsorted", 7_919_333)] {
         let queries: Vec<f64> =
             (0..n).map(|k| last * ((k * stride) % n) as f64 / n as f64).collect();
-        let t = best(n, || curve.cubic().evaluate_many(&queries, 0, Side::Right, &mut out));
+        let t = best(n, || curve.cubic().evaluate_many(&queries, 0, Side::Right));
         println!("{:<44}{t:>8.1}", format!("evaluation, local parameter, {name}"));
-        let s = best(n, || curve.evaluate_many(&queries, 0, Side::Right, &mut out));
+        let s = best(n, || curve.evaluate_many(&queries, 0, Side::Right));
         println!("{:<44}{s:>8.1}  {:.2} × local", format!("evaluation in s, {name}"), s / t);
     }
 
@@ -80,9 +79,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     let last = spline.curve().cubic().knots()[39];
     let queries: Vec<f64> = (0..n).map(|k| last * k as f64 / n as f64).collect();
     let cubic = spline.curve().cubic();
-    let t = best(n, || cubic.evaluate_many(&queries, 0, Side::Right, &mut out));
+    let t = best(n, || cubic.evaluate_many(&queries, 0, Side::Right));
     println!("{:<44}{t:>8.1}", "evaluation, local parameter, 40 points");
-    let s = best(n, || spline.curve().evaluate_many(&queries, 0, Side::Right, &mut out));
+    let s = best(n, || spline.curve().evaluate_many(&queries, 0, Side::Right));
     println!("{:<44}{s:>8.1}  {:.2} × local", "evaluation in s, 40 points", s / t);
 
     let offsets: Vec<usize> = (0..=300).map(|k| k * 55).collect();

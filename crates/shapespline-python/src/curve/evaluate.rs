@@ -9,7 +9,7 @@ use crate::{
     error::input_error,
     input::Query,
     options,
-    output::{FloatArray, shaped, vector, zeros},
+    output::{FloatArray, room, shaped, vector},
     work::detached,
 };
 
@@ -24,21 +24,16 @@ impl SpaceCurve {
         u: &[f64],
         of: impl Fn(&dyn Curve, f64) -> [f64; COLUMNS] + Send + Sync,
     ) -> PyResult<Vec<f64>> {
-        let mut values = zeros(u.len(), COLUMNS)?;
+        room(u.len(), COLUMNS)?;
         let curve = self.curve.as_ref();
-        detached(py, u.len(), || {
-            let block = |(u, out): (&[f64], &mut [f64])| {
-                for (&u, row) in u.iter().zip(out.chunks_exact_mut(COLUMNS)) {
-                    row.copy_from_slice(&of(curve, u));
-                }
-            };
+        let rows: Vec<[f64; COLUMNS]> = detached(py, u.len(), || {
             if u.len() <= BLOCK {
-                block((u, &mut values));
+                u.iter().map(|&u| of(curve, u)).collect()
             } else {
-                u.par_chunks(BLOCK).zip(values.par_chunks_mut(BLOCK * COLUMNS)).for_each(block);
+                u.par_iter().with_min_len(BLOCK).map(|&u| of(curve, u)).collect()
             }
         });
-        Ok(values)
+        Ok(rows.into_flattened())
     }
 
     /// A number for each parameter: a float for one, an array of the query's shape for many.
@@ -145,17 +140,15 @@ impl SpaceCurve {
                 Ok(vector(py, self.curve.path().evaluate(u, order, side), columns))
             }
             Query::One(u) => {
-                let mut value = [0.0; 3];
                 let path = self.curve.path();
-                path.evaluate_many(&[u], order, side, &mut value[..columns])
-                    .map_err(input_error)?;
-                Ok(vector(py, DVec3::from_array(value), columns))
+                let value = path.evaluate_many(&[u], order, side).map_err(input_error)?;
+                shaped(py, value, &[columns])
             }
             Query::Many(u) => {
                 let parameters = u.values();
-                let mut values = zeros(parameters.len(), columns)?;
-                detached(py, parameters.len(), || {
-                    self.curve.path().evaluate_many(parameters, order, side, &mut values)
+                room(parameters.len(), columns)?;
+                let values = detached(py, parameters.len(), || {
+                    self.curve.path().evaluate_many(parameters, order, side)
                 })
                 .map_err(input_error)?;
                 shaped(py, values, &with_columns(u.shape(), columns))

@@ -8,7 +8,7 @@ use super::SpaceCurve;
 use crate::{
     error::input_error,
     options::{self, Spacing},
-    output::{FloatArray, shaped, zeros},
+    output::{FloatArray, room, shaped, zeros},
     work::detached,
 };
 
@@ -95,8 +95,9 @@ impl SpaceCurve {
         #[pyo3(from_py_with = options::by)] by: Spacing,
     ) -> PyResult<FloatArray<'py>> {
         let (cubic, columns) = (self.curve.cubic(), self.columns());
-        let (mut u, mut values) = (zeros(n, 1)?, zeros(n, columns)?);
-        detached(py, n.max(cubic.segments()), || {
+        room(n, columns)?;
+        let mut u = zeros(n, 1)?;
+        let values = detached(py, n.max(cubic.segments()), || {
             let knots = cubic.knots();
             let (first, last) = (knots[0], knots[knots.len() - 1]);
             let part = |i: usize| i as f64 / (n - 1).max(1) as f64;
@@ -120,7 +121,7 @@ impl SpaceCurve {
                     }
                 }
             }
-            self.curve.path().evaluate_many(&u, 0, Side::Right, &mut values)
+            self.curve.path().evaluate_many(&u, 0, Side::Right)
         })
         .map_err(input_error)?;
         shaped(py, values, &[n, columns])
