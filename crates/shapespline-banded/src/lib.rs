@@ -11,6 +11,7 @@ pub mod box_qp;
 mod cyclic;
 mod error;
 mod resolvable;
+mod sweep;
 mod tridiagonal;
 
 pub use cyclic::solve_cyclic;

@@ -15,7 +15,10 @@ use std::ops::Range;
 
 use glam::DVec3;
 
-use crate::{SolveError, error::usable};
+use crate::{
+    SolveError,
+    sweep::{eliminate, eliminate_all, substitute, substitute_all},
+};
 
 /// A row `lower x[i−1] + diagonal x[i] + upper x[i+1] = right`, indices modulo `n` when cyclic.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -59,7 +62,7 @@ impl Resolvable {
     ///
     /// # Errors
     /// A pivot that is zero or not finite.
-    pub fn new<R: Rows>(rows: &R) -> Result<Self, SolveError> {
+    pub fn new<R: Rows + Sync>(rows: &R) -> Result<Self, SolveError> {
         let n = rows.count();
         let mut new = Self {
             ratio: vec![0.0; n],
@@ -87,8 +90,17 @@ impl Resolvable {
     ///
     /// # Errors
     /// A pivot that is zero or not finite.
-    pub fn solve_again<R: Rows>(&mut self, rows: &R) -> Result<(), SolveError> {
+    pub fn solve_again<R: Rows + Sync>(&mut self, rows: &R) -> Result<(), SolveError> {
         let n = self.solution.len();
+        if !rows.is_cyclic() {
+            eliminate_all(rows, &mut self.ratio, &mut self.reduced)?;
+            self.solution.copy_from_slice(&self.reduced);
+            if !substitute_all(&self.ratio, &mut self.solution) {
+                self.solution.copy_from_slice(&self.reduced);
+                substitute(&self.ratio, &mut self.solution, DVec3::ZERO);
+            }
+            return Ok(());
+        }
         let limit = Self::limit(rows);
         let mut before = (0.0, DVec3::ZERO);
         for step in 0..limit {
@@ -121,7 +133,7 @@ impl Resolvable {
     ///
     /// # Errors
     /// A pivot that is zero or not finite.
-    pub fn update<R: Rows>(
+    pub fn update<R: Rows + Sync>(
         &mut self,
         rows: &R,
         changed: &[usize],
@@ -242,32 +254,18 @@ impl Resolvable {
 ///
 /// # Errors
 /// A pivot that is zero or not finite.
-pub fn solve_once<R: Rows>(rows: &R) -> Result<Vec<DVec3>, SolveError> {
+pub fn solve_once<R: Rows + Sync>(rows: &R) -> Result<Vec<DVec3>, SolveError> {
     if rows.is_cyclic() {
         return Resolvable::new(rows).map(Resolvable::into_solution);
     }
     let n = rows.count();
-    let (mut ratio, mut solution) = (Vec::with_capacity(n), Vec::with_capacity(n));
-    let mut before = (0.0, DVec3::ZERO);
-    for i in 0..n {
-        before = eliminate(i, rows.row(i), before)?;
-        ratio.push(before.0);
-        solution.push(before.1);
-    }
-    let mut after = DVec3::ZERO;
-    for (x, ratio) in solution.iter_mut().zip(&ratio).rev() {
-        *x -= after * *ratio;
-        after = *x;
+    let (mut ratio, mut solution) = (vec![0.0; n], vec![DVec3::ZERO; n]);
+    eliminate_all(rows, &mut ratio, &mut solution)?;
+    if !substitute_all(&ratio, &mut solution) {
+        eliminate_all(rows, &mut ratio, &mut solution)?;
+        substitute(&ratio, &mut solution, DVec3::ZERO);
     }
     Ok(solution)
-}
-
-/// One step of Gaussian elimination.
-#[inline]
-fn eliminate(i: usize, row: Row, before: (f64, DVec3)) -> Result<(f64, DVec3), SolveError> {
-    let pivot = usable(i, row.diagonal - row.lower * before.0)?;
-    let reciprocal = 1.0 / pivot;
-    Ok((row.upper * reciprocal, (row.right - before.1 * row.lower) * reciprocal))
 }
 
 /// Whether row `i` lies in one of the ranges (ascending, disjoint, possibly running past `n`).

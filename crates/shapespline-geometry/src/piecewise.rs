@@ -3,6 +3,7 @@
 use std::sync::OnceLock;
 
 use glam::DVec3;
+use rayon::prelude::*;
 
 use crate::{
     CubicSegment, Curve, DataPolygon, Dimension, InputError, Locator, Side,
@@ -293,9 +294,15 @@ impl Curve for PiecewiseCubic {
     }
 }
 
+/// Legs from which on they are checked on all threads.
+const MANY: usize = 32_768;
+
 fn check_legs(legs: &[[DVec3; 2]]) -> Result<(), InputError> {
     // Zero times a number is zero, times an infinity or NaN it is NaN: one sum for all, no branch.
-    let zero = legs.iter().fold(DVec3::ZERO, |sum, [a, c]| sum + *a * 0.0 + *c * 0.0);
+    let sum = |legs: &[[DVec3; 2]]| {
+        legs.iter().fold(DVec3::ZERO, |sum, [a, c]| sum + *a * 0.0 + *c * 0.0)
+    };
+    let zero = if legs.len() < MANY { sum(legs) } else { legs.par_chunks(MANY / 4).map(sum).sum() };
     if zero == DVec3::ZERO {
         return Ok(());
     }

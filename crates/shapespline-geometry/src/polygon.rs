@@ -36,6 +36,9 @@ impl Dimension {
     }
 }
 
+/// Points from which on they are checked on all threads.
+const MANY: usize = 32_768;
+
 /// Points `I_0 … I_N` with parameters and end conditions, checked once, and the discrete shape they
 /// have: unit chords, binormal vectors, the sign of the discrete torsion (paper 001, section 2).
 ///
@@ -95,8 +98,15 @@ impl DataPolygon {
         boundary: Boundary,
     ) -> Result<Self, InputError> {
         check_ends(&points, boundary)?;
-        let longest = check_chords(&points)?;
-        let parameters = parametrization.parameters(&points)?;
+        // Two runs over the points that need nothing of each other.
+        let chords = || check_chords(&points);
+        let parameters = || parametrization.parameters(&points);
+        let (longest, parameters) = if points.len() < MANY {
+            (chords(), parameters())
+        } else {
+            rayon::join(chords, parameters)
+        };
+        let (longest, parameters) = (longest?, parameters?);
         check_velocities(&points, &parameters, longest)?;
         let tangents = end_tangents(&points, &parameters, boundary)?;
         let directions = OnceLock::new();
