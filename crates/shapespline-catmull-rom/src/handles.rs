@@ -37,11 +37,26 @@ fn each<T: Send>(count: usize, make: impl Fn(usize) -> T + Sync + Send) -> Vec<T
     }
 }
 
+/// The same of pairs, as two.
+fn each_pair<S: Send, T: Send>(
+    count: usize,
+    make: impl Fn(usize) -> (S, T) + Sync + Send,
+) -> (Vec<S>, Vec<T>) {
+    if count < 2 * BLOCK {
+        return (0..count).map(make).unzip();
+    }
+    let mut pair = (Vec::new(), Vec::new());
+    let all = (0..count).into_par_iter().with_min_len(BLOCK).map(make);
+    all.unzip_into_vecs(&mut pair.0, &mut pair.1);
+    pair
+}
+
 impl<'a> Handles<'a> {
     /// Handles of given factors, one a distinct node.
     pub(crate) fn new(polygon: &'a DataPolygon, factors: Vec<f64>) -> Self {
+        let full = FullLegs::new(polygon);
         let legs = each(polygon.segments(), |i| {
-            let [a, c] = full_legs(polygon, i);
+            let [a, c] = full.of(i);
             [a * factors[i], c * factors[(i + 1) % factors.len()]]
         });
         Self { polygon, legs, factors, tension: Vec::new() }.with_free_ends()
@@ -59,12 +74,13 @@ impl<'a> Handles<'a> {
         let sine = tolerances.collinearity;
         let cotangent = ((1.0 - sine) * (1.0 + sine)).sqrt() / sine;
         let n = polygon.segments();
+        let full = FullLegs::new(polygon);
         // Factors that each segment allows at its two ends.
         let limits = each(n, |i| {
             if !calls[i].any(bounded()) {
                 return [1.0; 2];
             }
-            let on = bounds(polygon, i, calls[i], full_legs(polygon, i), cotangent);
+            let on = bounds(polygon, i, calls[i], full.of(i), cotangent);
             on.map(|bound| f64::min(1.0, safety * bound))
         });
         // Factors of the legs before and after a node.
@@ -82,14 +98,13 @@ impl<'a> Handles<'a> {
             let one = continuity == Continuity::C1 || split();
             if one { [q.min(p); 2] } else { [q, p] }
         };
-        let legs = each(n, |i| {
-            let [a, c] = full_legs(polygon, i);
-            [a * joined(i)[1], c * joined(i + 1)[0]]
+        let (legs, mut factors) = each_pair(n, |i| {
+            let ([a, c], [before, after]) = (full.of(i), joined(i));
+            ([a * after, c * joined(i + 1)[0]], before.min(after))
         });
-        let factors = each(polygon.nodes(), |i| {
-            let [before, after] = joined(i);
-            before.min(after)
-        });
+        if !polygon.is_closed() {
+            factors.push(limits[n - 1][1]);
+        }
         Self { polygon, legs, factors, tension: Vec::new() }.with_free_ends()
     }
 
@@ -148,11 +163,24 @@ impl<'a> Handles<'a> {
     }
 }
 
-/// The full legs of a segment. A leg at an end of zero curvature is zero here.
-#[inline]
-fn full_legs(polygon: &DataPolygon, segment: usize) -> [DVec3; 2] {
-    let third = polygon.spacing(segment) / 3.0;
-    [segment, segment + 1].map(|node| tangent(polygon, node).unwrap_or_default() * third)
+/// The full legs of every segment: a third of the spacing along the tangents at its nodes.
+struct FullLegs<'a> {
+    polygon: &'a DataPolygon,
+    tangents: Vec<DVec3>,
+}
+
+impl<'a> FullLegs<'a> {
+    fn new(polygon: &'a DataPolygon) -> Self {
+        let at = |node| tangent(polygon, node).unwrap_or_default();
+        Self { polygon, tangents: each(polygon.points().len(), at) }
+    }
+
+    /// First and last leg. A leg at an end of zero curvature is zero here.
+    #[inline]
+    fn of(&self, segment: usize) -> [DVec3; 2] {
+        let third = self.polygon.spacing(segment) / 3.0;
+        [segment, segment + 1].map(|node| self.tangents[node] * third)
+    }
 }
 
 impl TensionFamily for Handles<'_> {
