@@ -165,16 +165,26 @@ fn keeps_shape<F: TensionFamily>(
     nodes: &Nodes,
     factor: f64,
 ) -> Result<bool, F::Error> {
-    scale(state, nodes, factor)?;
-    // Before, there were none anywhere.
-    Ok(state.faults().is_empty())
+    let changes = scaled(state, nodes, factor);
+    state.try_tension(&changes)
 }
 
+/// Sets nodes to a factor of their tension that is known to leave no faults.
 fn scale<F: TensionFamily>(
     state: &mut State<'_, '_, F>,
     nodes: &Nodes,
     factor: f64,
 ) -> Result<(), F::Error> {
+    let changes = scaled(state, nodes, factor);
+    state.set_tension(&changes)
+}
+
+/// The changes that bring nodes to a factor of their tension, ascending.
+fn scaled<F: TensionFamily>(
+    state: &State<'_, '_, F>,
+    nodes: &Nodes,
+    factor: f64,
+) -> Vec<(usize, f64)> {
     let present = state.family.tension();
     let mut changes: Vec<(usize, f64)> = nodes
         .iter()
@@ -182,5 +192,5 @@ fn scale<F: TensionFamily>(
         .filter(|&(i, tension)| present[i] != tension)
         .collect();
     changes.sort_unstable_by_key(|c| c.0);
-    state.set_tension(&changes)
+    changes
 }

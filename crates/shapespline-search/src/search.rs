@@ -65,6 +65,10 @@ pub(crate) struct State<'s, 'p, F> {
     faults: Vec<(usize, Faults)>,
     /// Ranges of segments that the last solve touched, ascending and disjoint.
     touched: Vec<Range<usize>>,
+    /// What a trial that failed left unchecked.
+    unchecked: Vec<Range<usize>>,
+    /// The segment on which the last trial failed: the first to be looked at in the next one.
+    suspect: usize,
     history: Vec<Step>,
     iterations: usize,
     solves: usize,
@@ -86,6 +90,8 @@ impl<'s, 'p, F: TensionFamily> State<'s, 'p, F> {
             monitor,
             faults,
             touched: Vec::new(),
+            unchecked: Vec::new(),
+            suspect: 0,
             history: Vec::new(),
             iterations: 1,
             solves: 1,
@@ -97,11 +103,6 @@ impl<'s, 'p, F: TensionFamily> State<'s, 'p, F> {
     /// Whether the data are closed.
     pub(crate) fn closed(&self) -> bool {
         self.checker.polygon().is_closed()
-    }
-
-    /// Segments that fail, ascending, with their faults.
-    pub(crate) fn faults(&self) -> &[(usize, Faults)] {
-        &self.faults
     }
 
     fn untouched(&self) -> bool {
@@ -187,10 +188,7 @@ impl<'s, 'p, F: TensionFamily> State<'s, 'p, F> {
 
     /// Sets tensions (ascending by node), solves where that matters, and checks what it touched.
     pub(crate) fn set_tension(&mut self, changes: &[(usize, f64)]) -> Result<(), F::Error> {
-        self.touched.clear();
-        self.family.set_tension(changes, &mut self.touched)?;
-        self.solves += 1;
-        merge(&mut self.touched);
+        self.solve(changes)?;
         let touched = &self.touched;
         self.faults.retain(|(i, _)| {
             let after = touched.partition_point(|r| r.start <= *i);
@@ -212,6 +210,33 @@ impl<'s, 'p, F: TensionFamily> State<'s, 'p, F> {
         if untouched > 0 {
             self.faults.sort_unstable_by_key(|f| f.0);
         }
+        Ok(())
+    }
+
+    /// Sets tensions of a curve without faults; whether it still has none. Ends at the first fault, and
+    /// leaves it to the next solve to look at the rest.
+    pub(crate) fn try_tension(&mut self, changes: &[(usize, f64)]) -> Result<bool, F::Error> {
+        self.solve(changes)?;
+        let (family, checker) = (&*self.family, self.checker);
+        let fails = |i: &usize| !checker.faults(*i, family.end_legs(*i)).is_empty();
+        let known = self.suspect;
+        let suspect = self.touched.iter().any(|r| r.contains(&known)).then_some(known);
+        let all = suspect.into_iter().chain(self.touched.iter().flat_map(Range::clone));
+        let fault = all.into_iter().find(fails);
+        if let Some(segment) = fault {
+            self.suspect = segment;
+            std::mem::swap(&mut self.unchecked, &mut self.touched);
+        }
+        Ok(fault.is_none())
+    }
+
+    /// Sets tensions and finds what has to be checked.
+    fn solve(&mut self, changes: &[(usize, f64)]) -> Result<(), F::Error> {
+        self.touched.clear();
+        self.touched.append(&mut self.unchecked);
+        self.family.set_tension(changes, &mut self.touched)?;
+        self.solves += 1;
+        merge(&mut self.touched);
         Ok(())
     }
 
