@@ -277,7 +277,7 @@ def test_notes_on_nodes():
     conditions = {record.condition for record in report.nodes}
     assert conditions <= {
         "compatibility", "same-torsion", "torsion-change", "convex-neighbourhood",
-        "inflection-neighbourhood",
+        "inflection-neighbourhood", "neighbourhood-torsion", "neighbourhood-coplanarity",
     }  # fmt: skip
     assert {"compatibility", "same-torsion"} <= conditions
     curve = cases.gm_line().fit()
@@ -292,6 +292,19 @@ def test_notes_on_nodes():
             between = np.cross(before, tangent) @ p > 0 and np.cross(tangent, after) @ p > 0
             assert record.satisfied == between
             assert record.location == curve.parameters[i]
+
+
+@pytest.mark.parametrize(
+    ("height", "condition"), [(0.5, "neighbourhood-torsion"), (0, "neighbourhood-coplanarity")]
+)
+def test_three_points_on_a_line_in_space(height, condition):
+    points = [[-1, 1, 0], [0, 0, 0], [1, 0, 0], [2, 0, 0], [3, -1, height], [3, -2, 1]]
+    curve = ss.NuSpline.shape_preserving(points)
+    found = {r.condition: r for r in curve.check().nodes if r.node == 2}
+    assert set(found) == {"inflection-neighbourhood", condition}
+    assert found[condition].satisfied == (found[condition].margin > 0)
+    u = curve.parameters
+    assert u[1] <= found[condition].location <= u[3]
 
 
 def test_oscillations_about_a_plane():
