@@ -29,7 +29,8 @@ use self::{
 use crate::general::{Segment, corners};
 
 /// Number of inflections, and a direction that shows them.
-#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct InflectionCount {
     /// The number.
     pub count: usize,

@@ -28,8 +28,9 @@ use crate::{
 };
 
 /// A condition at a node.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum NodeCondition {
     /// The tangent lies between the chords (12.1).
     Compatibility,
@@ -66,7 +67,8 @@ impl NodeCondition {
 }
 
 /// One condition at one node to which it applies.
-#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct NodeRecord {
     /// Index of the node.
     pub node: usize,
@@ -81,7 +83,8 @@ pub struct NodeRecord {
 }
 
 /// How a segment moves about the plane of its four points.
-#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Oscillation {
     /// Index of the segment, which calls for coplanarity.
     pub segment: usize,
@@ -98,7 +101,8 @@ pub struct Oscillation {
 }
 
 /// What the paper says beyond the criteria.
-#[derive(Debug, Clone, PartialEq, Default, serde::Serialize, serde::Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Notes {
     /// Conditions at the nodes to which they apply, ascending.
     pub nodes: Vec<NodeRecord>,
