@@ -361,3 +361,18 @@ fn reports_can_be_written_and_read() {
     // The torsion of the end segments is NaN: not equal to itself.
     assert_eq!(format!("{:?}", again(&shape)), format!("{shape:?}"));
 }
+
+#[test]
+fn the_report_on_a_clean_curve_takes_no_memory() {
+    for n in [100, 20_000] {
+        let turn = |k: usize| (0.5 * k as f64).sin_cos();
+        let points = (0..n).map(|k| DVec3::new(turn(k).0, turn(k).1, 0.2 * k as f64)).collect();
+        let natural = Boundary::ZeroCurvature;
+        let polygon = DataPolygon::new(points, &Parametrization::Uniform, natural).unwrap();
+        let fit = NuSpline::shape_preserving(polygon, &SearchOptions::default()).unwrap();
+        let report = fit.curve.check(Criteria::ALL, Tolerances::default()).unwrap();
+        assert!(report.ok() && report.segments == n - 1, "{report}");
+        assert!(report.count(Criterion::Torsion).applicable > n / 2);
+        assert_eq!((report.violations.capacity(), report.undecided.capacity()), (0, 0));
+    }
+}

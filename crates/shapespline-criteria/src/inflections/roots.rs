@@ -60,16 +60,14 @@ impl<F: FnMut(f64, f64)> Search<'_, F> {
     }
 }
 
-/// Whether the coefficients change sign once whatever the signs of those that rounding hides.
+/// Whether the coefficients, clear and different at the ends, change sign once whatever the signs of
+/// those that rounding hides.
 fn has_one_change<const N: usize>(p: &[f64; N], error: f64) -> bool {
-    // One change, and all that is unclear lies together with it: + + ? ? − −.
-    let first = p.iter().position(|c| c.abs() <= error || (*c > 0.0) != (p[0] > 0.0));
-    let last = p.iter().rposition(|c| c.abs() <= error || (*c > 0.0) != (p[N - 1] > 0.0));
-    match (first, last) {
-        // At most one coefficient between the clear runs leaves room for one change only.
-        (Some(first), Some(last)) => last <= first,
-        _ => true,
-    }
+    let agrees = |c: &f64, end: f64| c.abs() > error && (*c > 0.0) == (end > 0.0);
+    let first = p.iter().position(|c| !agrees(c, p[0]));
+    let last = p.iter().rposition(|c| !agrees(c, p[N - 1]));
+    // Between the clear runs from both ends there is room for one hidden coefficient: + + ? −.
+    first.zip(last).is_none_or(|(first, last)| last <= first)
 }
 
 /// The root between ends of different sign, and how far rounding leaves it open.

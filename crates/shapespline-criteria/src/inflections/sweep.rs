@@ -17,7 +17,7 @@ use shapespline_geometry::bernstein::multiply_quadratics;
 
 use super::{
     roots::roots,
-    sequence::{Arc, Item, Line, Sequence, View},
+    sequence::{Arc, Item, Line, STRAIGHT, Sequence, View},
 };
 
 /// The most that a walk has seen, or all walks have.
@@ -271,6 +271,23 @@ fn cross_arcs(arc: &Arc, other: &Arc, meet: &mut impl FnMut(f64, f64)) {
     let size = |p: [f64; 3]| p.iter().fold(0.0f64, |m, x| m.max(x.abs()));
     let [a, m, b] = [a, m, b].map(size);
     let error = slack * (2.0 * m + a + b) + 8.0 * f64::EPSILON * (m * m + a * b);
+    // Two pieces of one cubic, cut at a knot that is none: both arcs lie on one conic, and are apart
+    // unless the tangent runs through the same directions twice.
+    if p.iter().all(|x| x.abs() <= STRAIGHT * (m * m + a * b)) {
+        let [a, m, b] = other.omega.map(|w| arc.tangent_at(0.5).dot(w));
+        if a * b > 0.0 && a * m < 0.0 {
+            (0..2).for_each(|_| meet(0.5, 0.5));
+        }
+        return;
+    }
+    // The discriminant vanishes on the whole conic that the other is an arc of; off the arc the middle
+    // has the sign of the ends.
+    let meet = &mut |t: f64, width: f64| {
+        let [a, m, b] = other.omega.map(|w| arc.tangent_at(t).dot(w));
+        if m * (a + b) <= STRAIGHT.max(64.0 * width) * (a + b) * (a + b) {
+            meet(t, width);
+        }
+    };
     // Where one goes on as the other they touch: a double root, which is divided out.
     if other.continues && other.from == arc.from + 1 {
         roots([p[0], 2.0 * p[1], 6.0 * p[2]], 6.0 * error, meet);
