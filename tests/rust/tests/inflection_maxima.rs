@@ -146,6 +146,68 @@ fn planar_pieces_count_like_a_polygon() {
     }
 }
 
+/// Where a closed curve begins, its first and its last knot are in one place of the sphere.
+#[test]
+fn closed_curves_have_certain_maxima() {
+    let mut random = Random::new(81);
+    let mut exact = 0;
+    for case in 0..60 {
+        let mut points: Vec<DVec3> = (0..4 + case % 7).map(|_| random.vector()).collect();
+        points.push(points[0]);
+        let chordal = Parametrization::Chordal;
+        let polygon = DataPolygon::new(points, &chordal, Boundary::Periodic).unwrap();
+        let spline = NuSpline::new(polygon, Tension::Uniform(0.0)).unwrap();
+        let curve = PiecewiseBezier::from(spline.curve());
+        let most = curve_inflections(&curve);
+        let shown = (0..1500).map(|_| sampled(&curve, random.vector())).max().unwrap();
+        assert!(shown <= most.count, "{case}: {shown} > {}", most.count);
+        exact += usize::from(most.exact);
+    }
+    assert!(exact >= 58, "{exact}");
+}
+
+/// Lines, points, cusps, pieces run through twice, and any scale: a count comes back, and what its
+/// direction shows is no more.
+#[test]
+fn degenerate_curves_have_counts() {
+    let mut random = Random::new(82);
+    let make = |control: &[DVec3]| {
+        let breaks = (0..=control.len() / 4).map(|i| i as f64).collect();
+        PiecewiseBezier::new(breaks, control, 3, Dimension::Three).unwrap()
+    };
+    let check = |control: &[DVec3]| {
+        let curve = make(control);
+        let most = curve_inflections(&curve);
+        let seen = curve_inflections_from(&curve, most.direction).unwrap();
+        assert!(seen.count == most.count && most.direction.is_normalized(), "{control:?}");
+        most.count
+    };
+    let p: Vec<DVec3> = (0..40).map(|_| random.vector()).collect();
+    assert_eq!(check(&[p[0]; 8]), 0);
+    assert_eq!(check(&[0.0, 1.0, 2.0, 3.0, 3.0, 2.0, 1.0, 5.0].map(|x| p[0] * x)), 0);
+    // A cusp inside, legs of zero at the ends, a piece that goes back on itself.
+    let cusp = [p[0], p[0] + p[1] + p[2], p[0] + p[1] - p[2], p[0] + p[1] * 2.0 - p[2] * 0.1];
+    check(&cusp);
+    check(&[p[0], p[0], p[1], p[2], p[2], p[3], p[4], p[4]]);
+    let there: Vec<DVec3> = p[..4].to_vec();
+    let back: Vec<DVec3> = there.iter().rev().copied().collect();
+    let twice = [there.clone(), back].concat();
+    assert!(check(&twice) >= 2);
+    // Nearly planar, nearly straight, at any scale.
+    for flat in [1e-3, 1e-6, 1e-8, 1e-9, 1e-10, 1e-12, 1e-15] {
+        for scale in [1e-100, 1.0, 1e100] {
+            for sides in [DVec3::new(1.0, 1.0, flat), DVec3::new(1.0, flat, flat)] {
+                let control: Vec<DVec3> = p.iter().map(|p| *p * sides * scale).collect();
+                check(&control[..24]);
+            }
+        }
+    }
+    for scale in [1e-100, 1e100] {
+        let control: Vec<DVec3> = p.iter().map(|p| *p * scale).collect();
+        assert_eq!(check(&control), check(&p));
+    }
+}
+
 #[test]
 fn a_count_can_be_broken_off() {
     use std::ops::ControlFlow;

@@ -16,6 +16,7 @@
 mod roots;
 mod sequence;
 mod sweep;
+mod walk;
 
 use std::ops::ControlFlow;
 
@@ -24,7 +25,8 @@ use shapespline_geometry::{Dimension, InputError, PiecewiseBezier, normalize};
 
 use self::{
     sequence::{STRAIGHT, Sequence},
-    sweep::{Most, most},
+    sweep::most,
+    walk::Most,
 };
 use crate::general::{Segment, corners};
 

@@ -87,6 +87,8 @@ pub(super) struct Sequence {
     pub(super) links: Vec<Option<usize>>,
     /// Whether the signs of some planar piece could not be told from zero.
     pub(super) open: bool,
+    /// The last joint, where the tangent there is that of the first: the two are one.
+    pub(super) closing: Option<usize>,
 }
 
 impl Sequence {
@@ -120,6 +122,12 @@ impl Sequence {
                     sequence.push_line(turn / size, error / size, [k + 1; 2]);
                 }
             }
+        }
+        if let (Some(first), Some(last)) = (segment.pieces.first(), segment.pieces.last()) {
+            let [u, v] =
+                [first.tangent().ends()[0], last.tangent().ends()[1]].map(DVec3::normalize_or_zero);
+            let closes = u.cross(v).length() <= STRAIGHT;
+            sequence.closing = closes.then_some(segment.pieces.len());
         }
         Some(sequence)
     }
