@@ -272,38 +272,6 @@ def test_global_convexity_is_asked_for_by_name_only():
     assert kept.check(["convexity", "global-convexity"]).ok
 
 
-def test_notes_on_nodes():
-    report = cases.gm_line().fit().check()
-    conditions = {record.condition for record in report.nodes}
-    assert conditions <= {
-        "compatibility", "same-torsion", "torsion-change", "convex-neighbourhood",
-        "inflection-neighbourhood",
-    }  # fmt: skip
-    assert {"compatibility", "same-torsion"} <= conditions
-    curve = cases.gm_line().fit()
-    for record in report.nodes:
-        assert record.satisfied == (record.margin > 0)
-        assert 0 < record.node < 19
-        if record.condition == "compatibility":
-            # (12.1), written out.
-            i, tangent = record.node, curve.tangents[record.node]
-            before, after = np.diff(curve.points, axis=0)[i - 1 : i + 1]
-            p = np.cross(before, after)
-            between = np.cross(before, tangent) @ p > 0 and np.cross(tangent, after) @ p > 0
-            assert record.satisfied == between
-            assert record.location == curve.parameters[i]
-
-
-def test_oscillations_about_a_plane():
-    # Four points in a plane with a turn each way, then out of it.
-    points = np.array([[0.0, 0, 0], [1, 1, 0], [2, 0, 0], [3, 1, 0], [4, 1, 2], [5, 3, 1]])
-    report = ss.NuSpline(points).check()
-    assert report.counts()["coplanarity"][1] == len(report.oscillations) > 0
-    for record in report.oscillations:
-        assert record.satisfied == (record.crossings <= record.least)
-        assert record.amplitude >= 0
-
-
 def test_the_report_in_all_forms(tmp_path):
     import matplotlib as mpl
 

@@ -1,6 +1,10 @@
 """Inflection counts: the examples of the paper, theorems, and counts found by sampling."""
 
+import os
 import pickle
+import signal
+import threading
+import time
 
 import numpy as np
 import pytest
@@ -11,6 +15,7 @@ from scipy.interpolate import BPoly, CubicSpline, make_interp_spline
 import cases
 import polygons
 import shapespline as ss
+import threads
 
 
 def changes(values):
@@ -203,6 +208,49 @@ def test_every_kind_of_curve():
     most = ss.inflection_count(quintic)
     assert most >= expected
     assert ss.inflection_count(quintic, most.direction) == most
+
+
+@given(st.integers(0, 10_000), st.integers(4, 12))
+def test_no_direction_shows_more_of_a_spline_than_the_count(seed, size):
+    rng = np.random.default_rng(seed)
+    u = np.arange(float(size))
+    curve = CubicSpline(u, rng.normal(size=(size, 3)))
+    count = ss.inflection_count(curve)
+    assert count.exact
+    assert ss.inflection_count(curve, count.direction) == count
+    t = np.linspace(0, size - 1, 40 * size)
+    omega = np.cross(curve(t, 1), curve(t, 2))
+    signs = np.sign(omega @ rng.normal(size=(3, 1000)))
+    assert np.count_nonzero(np.diff(signs, axis=0), axis=0).max() <= count
+
+
+def long_spline(pieces):
+    walk = np.cumsum(np.random.default_rng(5).normal(size=(pieces + 1, 3)), axis=0)
+    return CubicSpline(np.arange(pieces + 1.0), walk)
+
+
+def test_the_count_of_a_long_spline_takes_no_minutes():
+    start = time.perf_counter()
+    count = ss.inflection_count(long_spline(1000))
+    assert time.perf_counter() - start < 30
+    assert count > 300
+
+
+def test_other_threads_run_meanwhile():
+    curve = long_spline(500)
+    assert threads.share_stood_still(lambda: ss.inflection_count(curve)) < 0.6
+
+
+@pytest.mark.skipif(os.name != "posix", reason="signals to the own process")
+@pytest.mark.parametrize("kind", ["spline", "points"])
+def test_ctrl_c_ends_it(kind):
+    spline = long_spline(20_000)
+    timer = threading.Timer(0.5, os.kill, (os.getpid(), signal.SIGINT))
+    start = time.perf_counter()
+    timer.start()
+    with pytest.raises(KeyboardInterrupt):
+        ss.inflection_count(spline if kind == "spline" else spline(spline.x))
+    assert time.perf_counter() - start < 10
 
 
 def test_the_planar_cubic_by_the_ratio_four():

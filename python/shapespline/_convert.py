@@ -35,7 +35,7 @@ def _coefficients(name: str, values: Any, *, leading: int) -> Floats:
             f"{name} must belong to a curve in the plane or in space, or to a function; got shape "
             f"{np.shape(values)}"
         )
-    return array.astype(float)
+    return array.astype(float, copy=False)
 
 
 def _of_bspline(curve: Any) -> PiecewiseBezier:

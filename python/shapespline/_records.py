@@ -41,8 +41,9 @@ class NodeRecord(NamedTuple):
     node : int
         Index of the point.
     condition : str
-        ``"compatibility"``, ``"same-torsion"``, ``"torsion-change"``, ``"convex-neighbourhood"`` or
-        ``"inflection-neighbourhood"``; see ``ShapeReport.nodes``.
+        ``"compatibility"``, ``"same-torsion"``, ``"torsion-change"``, ``"convex-neighbourhood"``,
+        ``"inflection-neighbourhood"``, ``"neighbourhood-torsion"`` or
+        ``"neighbourhood-coplanarity"``; see ``ShapeReport.nodes``.
     satisfied : bool
         Whether the curve meets it.
     margin : float

@@ -8,6 +8,7 @@ is no error.
 
 import argparse
 import gc
+import os
 import subprocess
 import sys
 import time
@@ -252,6 +253,57 @@ def memory(count: int) -> Iterator[Line]:
         yield Line(what, f"{ratio:.2f}×", "", ratio, "≤ 10×", ratio <= 10)
 
 
+# On one core, so the pool of threads has to be told before it is made.
+CHECKS = """
+import sys, time
+import numpy as np, shapespline as ss
+from scipy.interpolate import CubicSpline
+import polygons
+def least(call):
+    times = []
+    for _ in range(7):
+        start = time.perf_counter()
+        call()
+        times.append(time.perf_counter() - start)
+    return min(times)
+count = int(sys.argv[1])
+points = polygons.gentle_track(count + 1)
+curve = ss.NuSpline(points)
+every = [*curve.check().counts(), "global-convexity"]
+cubic = CubicSpline(curve.parameters, points)
+print(least(lambda: curve.check(every)) / count)
+print(least(lambda: ss.PiecewiseBezier.from_power(cubic.c, cubic.x)) / count)
+print(least(lambda: ss.check_shape(points, cubic)) / count)
+"""
+
+
+def checking(count: int) -> Iterator[Line]:
+    """Measure what a check costs a segment on one core, and a curve of SciPy's before it."""
+    done = subprocess.run(
+        [sys.executable, "-c", CHECKS, str(count)],
+        capture_output=True,
+        text=True,
+        check=True,
+        cwd=Path(__file__).parent.parent,
+        env=os.environ | {"RAYON_NUM_THREADS": "1"},
+    )
+    own, converted, foreign = map(float, done.stdout.split())
+    yield within(f"check of all criteria, a segment of {count:g}", own, 250e-9)
+    yield within(f"PPoly to Bézier points, a segment of {count:g}", converted, 300e-9)
+    yield within(f"check_shape of a CubicSpline, a segment of {count:g}", foreign, 1e-6)
+
+
+def counting(count: int) -> Iterator[Line]:
+    """Measure the most inflections over all directions, of points and of a spline through them."""
+    points = polygons.random_walk(np.random.default_rng(2), count)
+    spline = CubicSpline(np.arange(float(count)), points)
+    of_points, of_spline = best(
+        lambda: ss.inflection_count(points), lambda: ss.inflection_count(spline)
+    )
+    yield within(f"inflection_count of {count} points", of_points, 0.5)
+    yield within(f"inflection_count of a spline of {count} points", of_spline, 3.0)
+
+
 def main() -> int:
     """Print the table line by line as it is measured."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
@@ -269,6 +321,8 @@ def main() -> int:
         collections(),
         overhead(),
         memory(largest),
+        checking(largest),
+        counting(2000),
     ):
         for line in part:
             print(line, flush=True)

@@ -11,7 +11,8 @@ use shapespline_search::{
 use crate::handles::Handles;
 
 /// What is continuous at the points besides the direction of the tangent.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Continuity {
     /// The derivative: one handle scale a node.
     #[default]
@@ -60,7 +61,8 @@ impl HandleOptions {
 }
 
 /// A Catmull–Rom curve through points in the plane or in space. Immutable.
-#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct CatmullRom {
     curve: PiecewiseCubic,
     tension: Vec<f64>,

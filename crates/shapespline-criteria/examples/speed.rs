@@ -3,7 +3,9 @@
 
 use std::time::Instant;
 
-use shapespline_criteria::{Criteria, Tolerances, check, check_curve, polygon_inflections};
+use shapespline_criteria::{
+    Criteria, Tolerances, check, check_curve, curve_inflections, polygon_inflections,
+};
 use shapespline_geometry::{
     Boundary, DVec3, DataPolygon, Dimension, Parametrization, PiecewiseBezier,
 };
@@ -71,6 +73,12 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             |e| e.to_string(),
             |r| format!("{} violations, {} undecided", r.violations.len(), r.undecided.len()),
         )
+    });
+    let part = few.parameters().to_vec();
+    let cubic = PiecewiseBezier::new(part, &control[..4 * m], 3, three)?;
+    time("inflections of a cubic of 1,000 pieces", m, &|| {
+        let count = curve_inflections(&cubic);
+        format!("{} inflections, exact: {}", count.count, count.exact)
     });
     time("inflections of a polygon of 1,000 points", m, &|| {
         polygon_inflections(&points[..=m], three)

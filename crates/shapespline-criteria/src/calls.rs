@@ -153,7 +153,7 @@ fn of_segment(polygon: &DataPolygon, i: usize, tolerances: &Tolerances) -> Calls
 /// turn of 1e−7: holding the curve's binormal to that took a tension of 3e7.) And the polygon's own
 /// binormal vectors have to agree better than the curve is asked to: between `P_m` and `P_{m+1}` any
 /// curve has to turn its binormal as far as they differ.
-fn plane_is_known(p: DVec3, q: DVec3, sines: [f64; 2], tolerances: &Tolerances) -> bool {
+pub(crate) fn plane_is_known(p: DVec3, q: DVec3, sines: [f64; 2], tolerances: &Tolerances) -> bool {
     let turns = tolerances.zero.sqrt();
     let across = p.cross(q).length();
     sines[0] > turns
@@ -169,6 +169,12 @@ fn plane_is_known(p: DVec3, q: DVec3, sines: [f64; 2], tolerances: &Tolerances) 
 /// gives the true limit.
 #[must_use]
 pub fn separation(polygon: &DataPolygon, segment: usize) -> f64 {
+    separation_between(polygon, [segment; 2])
+}
+
+/// The same for the part of the curve from the start of one segment to the end of another, as if there
+/// were no points between.
+pub(crate) fn separation_between(polygon: &DataPolygon, [first, last]: [usize; 2]) -> f64 {
     let n = polygon.segments();
     let neighbour = |segment: usize, before: bool| -> f64 {
         let end = if before { segment == 0 } else { segment + 1 == n };
@@ -183,9 +189,10 @@ pub fn separation(polygon: &DataPolygon, segment: usize) -> f64 {
             }
         }
     };
-    let [h_before, h_after] = polygon.neighbour_spacings(segment);
-    let p = polygon.binormal(segment).length() * neighbour(segment, true);
-    let q = polygon.binormal(segment + 1).length() * neighbour(segment, false);
+    let h_before = polygon.neighbour_spacings(first)[0];
+    let h_after = polygon.neighbour_spacings(last)[1];
+    let p = polygon.binormal(first).length() * neighbour(first, true);
+    let q = polygon.binormal(last + 1).length() * neighbour(last, false);
     1.0 / (1.0 + (q / p).sqrt() * (h_before / h_after).powf(0.75))
 }
 

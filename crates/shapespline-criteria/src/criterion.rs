@@ -3,10 +3,9 @@
 use shapespline_geometry::InputError;
 
 /// A shape criterion.
-#[derive(
-    Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Serialize, serde::Deserialize,
-)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum Criterion {
     /// The curve turns as the polygon does, seen along both binormal vectors.
     Convexity,
@@ -61,7 +60,8 @@ impl std::fmt::Display for Criterion {
 }
 
 /// A set of criteria.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Criteria(u8);
 
 impl Criteria {
@@ -104,7 +104,8 @@ impl FromIterator<Criterion> for Criteria {
 }
 
 /// What counts as near a plane, near a line, and zero.
-#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Tolerances {
     /// `ε₁ ∈ (0, 1]`: sine of the largest angle between binormal and plane normal.
     pub coplanarity: f64,

@@ -12,7 +12,8 @@ use crate::{
 /// The conditions that fail on a segment `m`, as the failure sets (5.40)–(5.57) of paper 001
 /// (corrected by E3) and Theorems 13.6–13.11 of paper 002 distinguish them: the place of a failure
 /// decides which tensions can mend it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Faults(u32);
 
 impl Faults {

@@ -40,7 +40,6 @@ mod margin;
 mod notes;
 mod polygon_shape;
 mod report;
-mod sign_changes;
 
 pub use calls::{Calls, separation};
 pub use checker::{Checker, check};
@@ -48,8 +47,8 @@ pub use criterion::{Criteria, Criterion, Tolerances};
 pub use faults::Faults;
 pub use general::{CurveChecker, CurveError, INTERPOLATION, check_curve};
 pub use inflections::{
-    InflectionCount, curve_inflections, curve_inflections_from, polygon_inflections,
-    polygon_inflections_from,
+    InflectionCount, curve_inflections, curve_inflections_from, curve_inflections_with,
+    polygon_inflections, polygon_inflections_from, polygon_inflections_with,
 };
 pub use notes::{NodeCondition, NodeRecord, Notes, Oscillation};
 pub use polygon_shape::{Extent, PolygonShape, polygon_shape};

@@ -7,8 +7,9 @@ use shapespline_geometry::{DataPolygon, length};
 use crate::{Calls, Criteria, Tolerances};
 
 /// Whether a polygon lies on a line or in a plane.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum Extent {
     /// All points lie on one line: no criterion but collinearity applies.
     Line,
@@ -31,7 +32,8 @@ impl Extent {
 }
 
 /// The discrete shape of a data polygon, as plain data.
-#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct PolygonShape {
     /// Whether the points lie on a line or in a plane.
     pub extent: Extent,

@@ -3,7 +3,8 @@
 use crate::{Criteria, Criterion};
 
 /// One criterion on one segment.
-#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Record {
     /// Index of the segment, from 0.
     pub segment: usize,
@@ -21,7 +22,8 @@ pub struct Record {
 }
 
 /// How often a criterion applies, and how often it is violated.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Count {
     /// Segments that violate it.
     pub violated: usize,
@@ -31,7 +33,8 @@ pub struct Count {
 
 /// A criterion that could be neither proved nor refuted on a segment: something in it is zero to
 /// rounding. Segments of one cubic are always decided.
-#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Undecided {
     /// Index of the segment, from 0.
     pub segment: usize,
@@ -42,7 +45,8 @@ pub struct Undecided {
 }
 
 /// What a check found. It holds the violations only; its size does not grow with a clean curve.
-#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ShapeReport {
     /// Number of segments that were checked.
     pub segments: usize,

@@ -8,7 +8,8 @@ use crate::{
 };
 
 /// Condition at the two ends of a curve.
-#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Boundary {
     /// Zero curvature at both ends (`"zero-curvature"`, `"natural"`).
     ZeroCurvature,

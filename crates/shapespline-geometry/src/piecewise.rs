@@ -13,7 +13,8 @@ use crate::{
 };
 
 /// What a parameter outside the knots means.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Domain {
     /// An open curve: the end cubics go on.
     Open,
@@ -26,7 +27,8 @@ pub enum Domain {
 ///
 /// Only the points and each segment's end legs are held (80 bytes a segment in all); positions at
 /// knots are the points exactly.
-#[derive(Debug, serde::Serialize, serde::Deserialize)]
+#[derive(Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct PiecewiseCubic {
     knots: Vec<f64>,
     points: Vec<DVec3>,
@@ -35,7 +37,7 @@ pub struct PiecewiseCubic {
     dimension: Dimension,
     domain: Domain,
     /// Made by the first large unsorted evaluation.
-    #[serde(skip)]
+    #[cfg_attr(feature = "serde", serde(skip))]
     locator: OnceLock<Option<Locator>>,
 }
 

@@ -80,24 +80,49 @@ impl PiecewiseBezier {
         dimension: Dimension,
     ) -> Result<Self, InputError> {
         check_shape(&breaks, coefficients.len(), degree, "coefficients")?;
+        let of = |i: usize, k: usize| coefficients[i * (degree + 1) + k];
+        Self::from_power_with(breaks, degree, dimension, of)
+    }
+
+    /// The same from wherever the coefficients are: `coefficient(i, k)` is `c_k` of piece `i`. Cost
+    /// O(N), without another copy of them.
+    ///
+    /// # Errors
+    /// As [`PiecewiseBezier::new`].
+    pub fn from_power_with(
+        breaks: Vec<f64>,
+        degree: usize,
+        dimension: Dimension,
+        coefficient: impl Fn(usize, usize) -> DVec3,
+    ) -> Result<Self, InputError> {
+        let pieces = breaks.len().saturating_sub(1);
+        let expected = pieces.saturating_mul(degree.saturating_add(1));
+        check_shape(&breaks, expected, degree, "coefficients")?;
+        let mut control = Vec::with_capacity(pieces * (degree + 1));
+        let spacings = breaks.windows(2).map(|w| w[1] - w[0]).enumerate();
+        if degree == 3 {
+            for (i, h) in spacings {
+                let c = [3, 2, 1, 0].map(|k| coefficient(i, k));
+                control.extend(cubic_of_powers(c, h).map(|p| p.extend(1.0)));
+            }
+            return Self::homogeneous(breaks, control, degree, dimension, false);
+        }
         let rows: Vec<Vec<f64>> = (0..=degree).map(binomials).collect();
-        let mut control = Vec::with_capacity(coefficients.len());
-        for (piece, w) in coefficients.chunks_exact(degree + 1).zip(breaks.windows(2)) {
-            let h = w[1] - w[0];
+        let (mut scaled, mut points) = (Vec::new(), Vec::new());
+        for (i, h) in spacings {
             // In t = (u − u_i)/h the coefficient of t^k is c h^k; B_j = Σ_{k≤j} C(j,k)/C(d,k) c_k.
-            let mut scaled = Vec::with_capacity(degree + 1);
+            scaled.clear();
             let mut power = 1.0;
-            for &c in piece.iter().rev() {
-                scaled.push(c * power);
+            for k in (0..=degree).rev() {
+                scaled.push(coefficient(i, k) * power);
                 power *= h;
             }
-            let mut points: Vec<DVec3> = (0..=degree)
-                .map(|j| {
-                    // The constant last: it may be far larger than the rest.
-                    let part = |k: usize| scaled[k] * (rows[j][k] / rows[degree][k]);
-                    scaled[0] + (1..=j).fold(DVec3::ZERO, |sum, k| sum + part(k))
-                })
-                .collect();
+            points.clear();
+            points.extend((0..=degree).map(|j| {
+                // The constant last: it may be far larger than the rest.
+                let part = |k: usize| scaled[k] * (rows[j][k] / rows[degree][k]);
+                scaled[0] + (1..=j).fold(DVec3::ZERO, |sum, k| sum + part(k))
+            }));
             still_ends(&mut points, scaled.iter().fold(DVec3::ZERO, |sum, c| sum + c.abs()));
             control.extend(points.iter().map(|p| p.extend(1.0)));
         }
@@ -152,7 +177,8 @@ impl PiecewiseBezier {
         rational: bool,
     ) -> Result<Self, InputError> {
         check_shape(&breaks, control.len(), degree, "control")?;
-        if let Some(index) = control.iter().position(|p| rational && p.w <= 0.0) {
+        let not_positive = || control.iter().position(|p| p.w <= 0.0);
+        if let Some(index) = rational.then(not_positive).flatten() {
             let (argument, value) = ("weights", control[index].w);
             return Err(InputError::OutOfRange { argument, index, value, allowed: "positive" });
         }
@@ -260,16 +286,24 @@ impl From<&PiecewiseCubic> for PiecewiseBezier {
     }
 }
 
+/// The Bézier points of `c_0 + c_1 u + c_2 u² + c_3 u³` on `[0, h]`.
+#[inline]
+fn cubic_of_powers([c0, c1, c2, c3]: [DVec3; 4], h: f64) -> [DVec3; 4] {
+    let (c1, c2, c3) = (c1 * h, c2 * (h * h), c3 * (h * h * h));
+    let third = c1 * (1.0 / 3.0);
+    let mut points = [c0, c0 + third, c0 + (third + third + c2 * (1.0 / 3.0)), c0 + (c1 + c2 + c3)];
+    still_ends(&mut points, c0.abs() + c1.abs() + c2.abs() + c3.abs());
+    points
+}
+
 /// Components of the end legs that are rounding beside `size` become zero: a derivative that is zero
 /// at an end (common in monotone interpolants) is not to be given a sign by the change of basis.
+#[inline]
 fn still_ends(points: &mut [DVec3], size: DVec3) {
     let last = points.len() - 1;
     for (end, next) in [(0, 1), (last, last - 1)] {
-        for axis in 0..3 {
-            if (points[next][axis] - points[end][axis]).abs() <= 4.0 * f64::EPSILON * size[axis] {
-                points[next][axis] = points[end][axis];
-            }
-        }
+        let still = (points[next] - points[end]).abs().cmple(size * (4.0 * f64::EPSILON));
+        points[next] = DVec3::select(still, points[end], points[next]);
     }
 }
 
@@ -336,6 +370,32 @@ mod tests {
             let p = curve.piece(0);
             assert_eq!(p[3].y, p[2].y, "{i}");
             assert!(p[3].z > p[2].z && p[1].z == p[0].z);
+        }
+    }
+    /// Cubics take a way of their own: the same curve with a leading coefficient of zero does not.
+    #[test]
+    fn cubics_agree_with_their_powers_at_any_scale() {
+        for i in 0..200 {
+            let x = f64::from(i);
+            let h = 10f64.powi(i % 7 * 20 - 60) * (1.5 + x.sin());
+            let vector = |k: f64| {
+                let v = DVec3::new((1.3 * x + k).sin(), (0.7 * x - k).cos(), (x * k).sin());
+                v / h.powf(k)
+            };
+            let powers = [3.0, 2.0, 1.0, 0.0].map(vector);
+            let breaks = vec![0.0, h];
+            let three = Dimension::Three;
+            let cubic = PiecewiseBezier::from_power(breaks.clone(), &powers, 3, three).unwrap();
+            let raised: Vec<DVec3> = [DVec3::ZERO].into_iter().chain(powers).collect();
+            let quartic = PiecewiseBezier::from_power(breaks, &raised, 4, three).unwrap();
+            for k in 0..=10 {
+                let t = 0.1 * f64::from(k);
+                let exact =
+                    ((powers[0] * h * t + powers[1]) * h * t + powers[2]) * h * t + powers[3];
+                for curve in [&cubic, &quartic] {
+                    assert!((curve.position(h * t) - exact).length() < 1e-14, "{i} {t}");
+                }
+            }
         }
     }
 }

@@ -11,7 +11,8 @@ use crate::{
 };
 
 /// Number of coordinates of the data a polygon was made from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Dimension {
     /// Planar data; the third coordinate is zero throughout.
     Two,

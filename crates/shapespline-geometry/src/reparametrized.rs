@@ -14,7 +14,8 @@ use crate::{
 ///
 /// Knots, storage, the search for segments and the evaluation are those of the cubic; only the local
 /// parameter is another. Outside an open curve the end cubics go on, `t` as its end tangent.
-#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ReparametrizedCubic {
     cubic: PiecewiseCubic,
     slopes: Vec<[f64; 2]>,

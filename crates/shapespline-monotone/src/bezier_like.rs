@@ -13,10 +13,10 @@
 
 use crate::MonotoneError;
 use crate::bernstein;
-use serde::{Deserialize, Serialize};
 
 /// Which curve, with its parameters.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum BezierLike {
     /// The cubic (1) with parameters a, b.
     Cubic {

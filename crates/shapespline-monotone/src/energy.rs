@@ -1,10 +1,10 @@
 //! The two energies of a quintic segment, and how they are weighted.
 
 use crate::data::Data;
-use serde::{Deserialize, Serialize};
 
 /// What the C² quintic minimises.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Fairness {
     /// The bending energy `∫ y''² dx`: equation (20) with each segment's term times `hᵢ⁻³`.
     #[default]

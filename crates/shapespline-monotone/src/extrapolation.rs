@@ -1,10 +1,10 @@
 //! What a function is outside its knots.
 
 use crate::MonotoneError;
-use serde::{Deserialize, Serialize};
 
 /// What a function is outside its knots.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Extrapolation {
     /// The polynomial of the end segment goes on (SciPy's `True`, the default).
     #[default]

@@ -3,14 +3,14 @@
 use crate::bernstein;
 use crate::extrapolation::Extrapolation;
 use crate::locate::Locator;
-use serde::{Deserialize, Serialize};
 
 /// A piecewise polynomial `Σₖ cₖ Bₖⁿ((x − xᵢ)/hᵢ)` on increasing knots.
 ///
 /// The counterpart of SciPy's `BPoly`. Made by [`crate::MonotoneSpline::derivative`] and
 /// [`crate::MonotoneSpline::antiderivative`]; immutable, `Send + Sync`.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-#[serde(try_from = "Parts", into = "Parts")]
+#[derive(Debug, Clone)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "Parts", into = "Parts"))]
 pub struct PiecewisePolynomial {
     x: Vec<f64>,
     degree: usize,
@@ -21,7 +21,8 @@ pub struct PiecewisePolynomial {
 }
 
 /// The stored form.
-#[derive(Debug, Clone, Serialize, Deserialize)]
+#[cfg(feature = "serde")]
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
 struct Parts {
     x: Vec<f64>,
     degree: usize,
@@ -29,12 +30,14 @@ struct Parts {
     extrapolate: Extrapolation,
 }
 
+#[cfg(feature = "serde")]
 impl From<PiecewisePolynomial> for Parts {
     fn from(p: PiecewisePolynomial) -> Self {
         Self { x: p.x, degree: p.degree, c: p.c, extrapolate: p.extrapolate }
     }
 }
 
+#[cfg(feature = "serde")]
 impl TryFrom<Parts> for PiecewisePolynomial {
     type Error = String;
     fn try_from(p: Parts) -> Result<Self, String> {

@@ -6,7 +6,6 @@ use crate::data::{Data, check_finite};
 use crate::extrapolation::Extrapolation;
 use crate::slopes;
 use crate::spline::{Kind, MonotoneSpline};
-use serde::{Deserialize, Serialize};
 use std::ops::Deref;
 
 /// λ is lowered by this much below the largest admissible one, so that the derivative stays strictly non-negative
@@ -14,7 +13,8 @@ use std::ops::Deref;
 const INSIDE: f64 = 1.0 - 1e-12;
 
 /// Starting values of the shape parameters, non-negative.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Shape {
     /// α = β everywhere; the paper takes 3.
     Uniform(f64),
@@ -64,7 +64,8 @@ pub struct QuarticOptions {
 /// On every segment the curve (3) with `mᵢ = hᵢdᵢ`; α, β start from [`QuarticOptions::shape`] and are scaled by the
 /// largest λ ∈ [0, 1] that leaves the derivative non-negative. Local: a point moves at most four segments. Monotone
 /// on every interval where the data are, flat where they are flat; decreasing data give the reflected curve. O(N).
-#[derive(Debug, Clone, Serialize, Deserialize)]
+#[derive(Debug, Clone)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct MonotoneQuartic {
     spline: MonotoneSpline,
     shape: Shape,

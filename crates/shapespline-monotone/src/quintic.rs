@@ -10,11 +10,11 @@ use crate::quartic_form::certified_nonnegative;
 use crate::slopes;
 use crate::spline::{Kind, MonotoneSpline};
 use crate::windows;
-use serde::{Deserialize, Serialize};
 use std::ops::Deref;
 
 /// Nodal slopes.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Slopes {
     /// Fritsch and Butland's harmonic means and the paper's end formula.
     #[default]
@@ -47,7 +47,8 @@ impl Default for QuinticOptions {
 }
 
 /// Which iteration made a [`MonotoneQuintic`].
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Solver {
     /// The primal–dual active set on the tridiagonal box program (slopes given).
     ActiveSet,
@@ -56,7 +57,8 @@ pub enum Solver {
 }
 
 /// How the optimisation went. The curve is monotone whatever these numbers say.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Diagnostics {
     /// The method.
     pub solver: Solver,
@@ -82,7 +84,8 @@ pub struct Diagnostics {
 /// default): the least energy over C² monotone quintics on the data's knots, to half a per cent, never above the
 /// former. Data that are not monotone are fitted piecewise: flat at turns and flats, C² and monotone on every
 /// interval where the data are.
-#[derive(Debug, Clone, Serialize, Deserialize)]
+#[derive(Debug, Clone)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct MonotoneQuintic {
     spline: MonotoneSpline,
     diagnostics: Diagnostics,

@@ -1,12 +1,11 @@
 //! One segment as it is evaluated: a cache line of numbers that keeps the ends exact.
 
-use serde::{Deserialize, Serialize};
-
 /// `f(t) = y₀ + Δy t + t(t−1) q(2t−1)` with a cubic q: every polynomial of degree five through the two data points.
 ///
 /// The form interpolates structurally, its coefficients are of the size of Δy (power forms about an end have them
 /// thirty times larger and lose as many ulps), and evaluation is summed from the nearer end.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[repr(C, align(64))]
 pub(crate) struct Record {
     pub(crate) x0: f64,

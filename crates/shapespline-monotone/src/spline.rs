@@ -7,7 +7,6 @@ use crate::locate::{Locator, Searcher};
 use crate::piecewise::PiecewisePolynomial;
 use crate::record::Record;
 use rayon::prelude::*;
-use serde::{Deserialize, Serialize};
 
 /// Queries handled by one task of the thread pool, and the number from which the pool is used.
 const CHUNK: usize = 1 << 15;
@@ -15,7 +14,8 @@ const CHUNK: usize = 1 << 15;
 const BLOCK: usize = 32;
 
 /// What the pieces are beyond their end values and slopes.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) enum Kind {
     /// `e = ⅔(αm₀ − βm₁)` of every segment, in units of y.
     Quartic { e: Vec<f64> },
@@ -26,9 +26,10 @@ pub(crate) enum Kind {
 /// A piecewise quartic (C¹) or quintic (C²) through data, monotone on every segment.
 ///
 /// Values at knots are the data to the last bit, values between them stay between the two data values. Immutable,
-/// `Send + Sync`, serialisable. [`crate::MonotoneQuartic`] and [`crate::MonotoneQuintic`] dereference to it.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-#[serde(try_from = "Stored", into = "Stored")]
+/// `Send + Sync`, serialisable with the feature `serde`. [`crate::MonotoneQuartic`] and [`crate::MonotoneQuintic`] dereference to it.
+#[derive(Debug, Clone)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "Stored", into = "Stored"))]
 pub struct MonotoneSpline {
     pub(crate) x: Vec<f64>,
     pub(crate) y: Vec<f64>,
@@ -40,7 +41,8 @@ pub struct MonotoneSpline {
 }
 
 /// The stored form.
-#[derive(Debug, Clone, Serialize, Deserialize)]
+#[cfg(feature = "serde")]
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
 struct Stored {
     x: Vec<f64>,
     y: Vec<f64>,
@@ -50,6 +52,7 @@ struct Stored {
     extrapolate: Extrapolation,
 }
 
+#[cfg(feature = "serde")]
 impl From<MonotoneSpline> for Stored {
     fn from(s: MonotoneSpline) -> Self {
         let MonotoneSpline { x, y, d, kind, records, extrapolate, .. } = s;
@@ -57,6 +60,7 @@ impl From<MonotoneSpline> for Stored {
     }
 }
 
+#[cfg(feature = "serde")]
 impl TryFrom<Stored> for MonotoneSpline {
     type Error = String;
     fn try_from(s: Stored) -> Result<Self, String> {

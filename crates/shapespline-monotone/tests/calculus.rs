@@ -308,6 +308,7 @@ fn batches_are_the_single_fits() {
     assert!(fit_rows::<MonotoneQuartic>(&xs, &ys, &[0, 5], &QuarticOptions::default()).is_err());
 }
 
+#[cfg(feature = "serde")]
 #[test]
 fn stored_and_shared() {
     fn shared<T: Send + Sync + 'static>(_: &T) {}

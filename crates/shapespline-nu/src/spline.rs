@@ -11,7 +11,8 @@ use shapespline_search::{
 use crate::system::NuSystem;
 
 /// A ν-spline through points in the plane or in space. Immutable.
-#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct NuSpline {
     curve: PiecewiseCubic,
     tension: Vec<f64>,

@@ -67,8 +67,13 @@ pub(crate) struct PiecewiseBezier {
 
 /// Rows of 2 or 3 coordinates as vectors.
 pub(crate) fn rows(values: &[f64], columns: usize) -> Vec<DVec3> {
-    let vector = |p: &[f64]| DVec3::new(p[0], p[1], if columns == 3 { p[2] } else { 0.0 });
-    values.chunks_exact(columns).map(vector).collect()
+    values.chunks_exact(columns).map(row).collect()
+}
+
+/// A point of two or three coordinates.
+#[inline]
+fn row(p: &[f64]) -> DVec3 {
+    DVec3::new(p[0], p[1], if p.len() == 3 { p[2] } else { 0.0 })
 }
 
 fn dimension(argument: &str, given: &Array<'_>, columns: usize) -> PyResult<Dimension> {
@@ -235,6 +240,7 @@ impl PiecewiseBezier {
     #[classmethod]
     fn from_power(
         _class: &Bound<'_, PyType>,
+        py: Python<'_>,
         coefficients: &Bound<'_, PyAny>,
         breaks: &Bound<'_, PyAny>,
     ) -> PyResult<Self> {
@@ -250,15 +256,15 @@ impl PiecewiseBezier {
                 breaks.len()
             )));
         }
-        let given = rows(coefficients.values(), columns);
-        let ordered: Vec<DVec3> = (0..pieces)
-            .flat_map(|i| (0..order).map(move |k| (k, i)))
-            .map(|(k, i)| given[k * pieces + i])
-            .collect();
         let degree = order.saturating_sub(1);
-        geometry::PiecewiseBezier::from_power(breaks, &ordered, degree, dimension)
-            .map(Self::of)
-            .map_err(input_error)
+        let values = coefficients.values();
+        let curve = py.detach(|| {
+            geometry::PiecewiseBezier::from_power_with(breaks, degree, dimension, |i, k| {
+                let at = (k * pieces + i) * columns;
+                row(&values[at..at + columns])
+            })
+        });
+        curve.map(Self::of).map_err(input_error)
     }
 
     /// Bézier points of the pieces, shape (pieces, degree + 1, dim); a fresh array.

@@ -3,11 +3,16 @@
 use std::sync::Arc;
 
 use numpy::PyArray1;
-use pyo3::{IntoPyObjectExt, exceptions::PyValueError, prelude::*, types::PyDict};
+use pyo3::{
+    IntoPyObjectExt,
+    exceptions::{PyRuntimeError, PyValueError},
+    prelude::*,
+    types::PyDict,
+};
 use shapespline::{
     criteria::{
-        CurveError, INTERPOLATION, InflectionCount, Tolerances, curve_inflections,
-        curve_inflections_from, polygon_inflections, polygon_inflections_from, polygon_shape,
+        CurveError, INTERPOLATION, InflectionCount, Tolerances, curve_inflections_from,
+        curve_inflections_with, polygon_inflections_from, polygon_inflections_with, polygon_shape,
     },
     geometry::{self, Boundary, DVec3, DVec4, DataPolygon, Dimension, Parametrization, normalize},
 };
@@ -19,7 +24,7 @@ use crate::{
     output::{vector, vectors},
     piecewise::PiecewiseBezier,
     report::{ShapeReport, Subject},
-    work::detached,
+    work::{detached, interruptible_many},
 };
 
 /// Directions of the curve at its two ends that differ by a smaller sine close it smoothly.
@@ -140,11 +145,15 @@ pub(crate) fn _polygon_inflections<'py>(
     #[pyo3(from_py_with = view)] direction: Option<DVec3>,
 ) -> PyResult<Counted<'py>> {
     let Points { points, dimension } = points;
-    let count = detached(py, points.len(), || match direction {
-        Some(direction) => polygon_inflections_from(&points, direction),
-        None => polygon_inflections(&points, dimension),
-    });
-    count.map(|count| counted(py, count)).map_err(input_error)
+    let count = match direction {
+        Some(direction) => {
+            detached(py, points.len(), || polygon_inflections_from(&points, direction).map(Some))
+        }
+        None => {
+            interruptible_many(py, |go_on| polygon_inflections_with(&points, dimension, go_on))?
+        }
+    };
+    finished(py, count.map_err(input_error)?)
 }
 
 #[pyfunction]
@@ -154,11 +163,19 @@ pub(crate) fn _curve_inflections<'py>(
     #[pyo3(from_py_with = view)] direction: Option<DVec3>,
 ) -> PyResult<Counted<'py>> {
     let curve = &curve.get().curve;
-    let count = detached(py, curve.pieces(), || match direction {
-        Some(direction) => curve_inflections_from(curve, direction),
-        None => Ok(curve_inflections(curve)),
-    });
-    count.map(|count| counted(py, count)).map_err(input_error)
+    let count = match direction {
+        Some(direction) => {
+            detached(py, curve.pieces(), || curve_inflections_from(curve, direction).map(Some))
+        }
+        None => interruptible_many(py, |go_on| Ok(curve_inflections_with(curve, go_on)))?,
+    };
+    finished(py, count.map_err(input_error)?)
+}
+
+/// A count that was broken off came with an exception, which is raised before this.
+fn finished(py: Python<'_>, count: Option<InflectionCount>) -> PyResult<Counted<'_>> {
+    let broken_off = || PyRuntimeError::new_err("the count was broken off");
+    count.map(|count| counted(py, count)).ok_or_else(broken_off)
 }
 
 /// The discrete shape of points, by the names of its parts.

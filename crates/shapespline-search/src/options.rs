@@ -4,8 +4,9 @@ use shapespline_criteria::{Checker, Criteria, Tolerances};
 use shapespline_geometry::{DataPolygon, InputError};
 
 /// The rule by which tension is raised, and whether it is relaxed afterwards.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum Strategy {
     /// The paper's rule: `ν ← ν + step` (5.61). Slow where much tension is needed.
     Nussp,

@@ -60,7 +60,8 @@ impl TangentScale<'_> {
 /// Its parameter is Manni's `s`: equal to the data's parameters at the points, and such that the
 /// curve is C² in it. The image alone, run through linearly on each segment, is
 /// `curve().cubic()`.
-#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct TensionSpline {
     curve: ReparametrizedCubic,
     tension: Vec<f64>,

@@ -2,11 +2,16 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "test code")]
 
 use shapespline::criteria::{
-    CurveChecker, CurveError, INTERPOLATION, check_curve, curve_inflections,
+    CurveChecker, CurveError, INTERPOLATION, check_curve, curve_inflections, polygon_inflections,
+    polygon_shape,
 };
 use shapespline::geometry::{DVec4, PiecewiseBezier};
 use shapespline::prelude::*;
-use shapespline_tests::{feature_line, generate::Random, helix, segments};
+use shapespline_tests::{
+    feature_line,
+    generate::{Kind, Random},
+    helix, segments,
+};
 
 /// Degree elevation of homogeneous control points.
 fn elevated(p: &[DVec4]) -> Vec<DVec4> {
@@ -328,4 +333,46 @@ fn curves_that_do_not_belong_to_the_points_are_refused() {
     assert!(spline(&[0.0, 1.0, 2.0, 1.5, 4.0, 5.0, 6.0]).contains("knots[3] = 1.5"));
     assert!(spline(&[0.0; 5]).contains("knots must have length 7"));
     assert!(spline(&[0.0; 7]).contains("knots"));
+}
+
+/// What a check and its kin hand out is plain data: written and read again it is the same.
+#[test]
+fn reports_can_be_written_and_read() {
+    fn again<T: serde::Serialize + serde::de::DeserializeOwned>(x: &T) -> T {
+        postcard::from_bytes(&postcard::to_stdvec(x).unwrap()).unwrap()
+    }
+    let mut random = Random::new(17);
+    let points = Kind::Walk.points(12, &mut random);
+    let natural = Boundary::ZeroCurvature;
+    let polygon = DataPolygon::new(points.clone(), &Parametrization::Uniform, natural).unwrap();
+    let checker = Checker::new(&polygon, Criteria::EVERY, Tolerances::default());
+    let legs = |i: usize| [DVec3::new(0.3, 0.1, -0.2), polygon.chord(i) / 3.0];
+    let report = checker.report(legs);
+    assert!(report.violations.len() > 3, "{report}");
+    assert_eq!(again(&report), report);
+    let notes = checker.notes(legs);
+    assert!(!notes.nodes.is_empty());
+    assert_eq!(again(&notes), notes);
+    let record = checker.record(1, legs(1), Criterion::Torsion);
+    assert_eq!(again(&record), record);
+    let count = polygon_inflections(&points, Dimension::Three).unwrap();
+    assert_eq!(again(&count), count);
+    let shape = polygon_shape(&polygon, &Tolerances::default());
+    // The torsion of the end segments is NaN: not equal to itself.
+    assert_eq!(format!("{:?}", again(&shape)), format!("{shape:?}"));
+}
+
+#[test]
+fn the_report_on_a_clean_curve_takes_no_memory() {
+    for n in [100, 20_000] {
+        let turn = |k: usize| (0.5 * k as f64).sin_cos();
+        let points = (0..n).map(|k| DVec3::new(turn(k).0, turn(k).1, 0.2 * k as f64)).collect();
+        let natural = Boundary::ZeroCurvature;
+        let polygon = DataPolygon::new(points, &Parametrization::Uniform, natural).unwrap();
+        let fit = NuSpline::shape_preserving(polygon, &SearchOptions::default()).unwrap();
+        let report = fit.curve.check(Criteria::ALL, Tolerances::default()).unwrap();
+        assert!(report.ok() && report.segments == n - 1, "{report}");
+        assert!(report.count(Criterion::Torsion).applicable > n / 2);
+        assert_eq!((report.violations.capacity(), report.undecided.capacity()), (0, 0));
+    }
 }

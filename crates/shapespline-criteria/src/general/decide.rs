@@ -162,9 +162,29 @@ fn inside(v: &Polynomial<DVec3>, along: &Polynomial<f64>, axis: DVec3, epsilon: 
         Sign::Positive => {}
         other => return other,
     }
+    depth(v, along, axis, epsilon).sign()
+}
+
+/// `ε²(v·n)² − (1−ε²)‖v×n‖²`.
+fn depth(
+    v: &Polynomial<DVec3>,
+    along: &Polynomial<f64>,
+    axis: DVec3,
+    epsilon: f64,
+) -> Polynomial<f64> {
     let across = v.map(1.0, |v| v.cross(axis));
     let square = along.product(along, |a, b| a * b);
     let outside = across.product(&across, DVec3::dot);
     let factor = (1.0 - epsilon) * (1.0 + epsilon);
-    square.map(epsilon * epsilon, |x| epsilon * epsilon * x).plus(&outside, -factor).sign()
+    square.map(epsilon * epsilon, |x| epsilon * epsilon * x).plus(&outside, -factor)
+}
+
+/// Whether `ω` is nowhere outside the double cone: it may lie in the boundary, vanish, and pass from
+/// one half to the other.
+pub(crate) fn is_never_outside(segment: &Segment, axis: DVec3, epsilon: f64) -> bool {
+    segment.pieces.iter().all(|piece| {
+        let omega = piece.omega();
+        let depth = depth(&omega, &omega.map(1.0, |w| w.dot(axis)), axis, epsilon);
+        !depth.signs().0.contains(&false)
+    })
 }

@@ -25,7 +25,7 @@ pub(crate) struct Jet {
 }
 
 impl Jet {
-    fn omega(&self) -> DVec3 {
+    pub(crate) fn omega(&self) -> DVec3 {
         self.d[1].cross(self.d[2])
     }
 }

@@ -16,6 +16,6 @@ mod segment;
 mod swing;
 
 pub use checker::{CurveChecker, CurveError, INTERPOLATION, check_curve};
-pub(crate) use decide::{Question, corners, decide};
+pub(crate) use decide::{Question, corners, decide, is_never_outside};
 pub(crate) use measure::{measure, minimum};
 pub(crate) use segment::{Piece, Segment};

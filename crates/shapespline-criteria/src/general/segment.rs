@@ -104,6 +104,11 @@ impl Piece {
         &self.a[1]
     }
 
+    /// `A'`, of a polynomial piece.
+    pub(crate) fn polynomial_velocity(&self) -> Option<&Polynomial<DVec3>> {
+        self.w.is_none().then_some(&self.a[1])
+    }
+
     /// Positive multiples of the tangent.
     pub(crate) fn tangent(&self) -> Polynomial<DVec3> {
         match &self.w {

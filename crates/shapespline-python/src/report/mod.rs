@@ -186,6 +186,9 @@ impl ShapeReport {
     /// polygon's changes sign (Theorem 12.1). ``"convex-neighbourhood"`` and
     /// ``"inflection-neighbourhood"``: the conditions of Definition 8.2 around three points on a line;
     /// a curve through the middle one can meet the first with equality only, by being straight.
+    /// ``"neighbourhood-torsion"`` and ``"neighbourhood-coplanarity"``: what that definition asks of
+    /// the two segments around the middle point together, by the four points that are left; near the
+    /// plane of a convex neighbourhood the binormal may flip, for there the curve has to inflect.
     ///
     /// None of them enters ``ok`` or ``counts``. Made anew at each access; cost O(N), much slower than
     /// the check.

@@ -10,24 +10,27 @@
 //!   out, the two segments together keep the convexity, or the inflection, of the points around, and
 //!   the nodes beside are compatible. A curve through the middle point of a convex neighbourhood can
 //!   meet this with equality only, by being straight; the margin says how far it bends the other way.
+//!   The definition's last sentence asks for torsion, or coplanarity, of the two together as well.
 //! - *Oscillation* (section 10): how often the curve crosses the plane of a coplanar quadruple between
 //!   two points, beside the least that its end tangents allow: none where it leaves and arrives on
 //!   the same side, one where on opposite sides. A cubic always has the least.
 
-use glam::DVec3;
-use shapespline_geometry::{Boundary, polynomial::Sign};
+mod neighbourhood;
 
+use glam::DVec3;
+
+use self::neighbourhood::Pair;
 use crate::{
     Calls, Checker, Criterion,
     calls::plane_normal,
-    faults::Cones,
-    general::{Question, Segment, decide, measure, minimum},
+    general::{Segment, minimum},
     margin::Margin,
 };
 
 /// A condition at a node.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum NodeCondition {
     /// The tangent lies between the chords (12.1).
     Compatibility,
@@ -39,6 +42,12 @@ pub enum NodeCondition {
     ConvexNeighbourhood,
     /// Three points on a line between points that turn opposite ways (Definition 8.2).
     InflectionNeighbourhood,
+    /// Three points on a line: torsion of the sign of the points around, on both segments
+    /// (Definition 8.2, last sentence).
+    NeighbourhoodTorsion,
+    /// Three points on a line between points in one plane: a binormal near that plane's normal, on
+    /// both segments (Definition 8.2, last sentence).
+    NeighbourhoodCoplanarity,
 }
 
 impl NodeCondition {
@@ -51,12 +60,15 @@ impl NodeCondition {
             Self::TorsionChange => "torsion-change",
             Self::ConvexNeighbourhood => "convex-neighbourhood",
             Self::InflectionNeighbourhood => "inflection-neighbourhood",
+            Self::NeighbourhoodTorsion => "neighbourhood-torsion",
+            Self::NeighbourhoodCoplanarity => "neighbourhood-coplanarity",
         }
     }
 }
 
 /// One condition at one node to which it applies.
-#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct NodeRecord {
     /// Index of the node.
     pub node: usize,
@@ -71,7 +83,8 @@ pub struct NodeRecord {
 }
 
 /// How a segment moves about the plane of its four points.
-#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Oscillation {
     /// Index of the segment, which calls for coplanarity.
     pub segment: usize,
@@ -88,7 +101,8 @@ pub struct Oscillation {
 }
 
 /// What the paper says beyond the criteria.
-#[derive(Debug, Clone, PartialEq, Default, serde::Serialize, serde::Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Notes {
     /// Conditions at the nodes to which they apply, ascending.
     pub nodes: Vec<NodeRecord>,
@@ -113,14 +127,18 @@ pub(crate) fn notes(checker: &Checker<'_>, segment: impl Fn(usize) -> Segment) -
     let mut notes = Notes::default();
     // Closed data: the last node is the first.
     let nodes = if polygon.is_closed() { 0..n } else { 1..n };
+    let calls = Calls::of_polygon(polygon, &checker.tolerances());
+    let spatial = calls.iter().any(|c| c.any(Calls::of(Criterion::Torsion)));
     for node in nodes {
         let sides = [segment((node + n - 1) % n), segment(node)];
         let around = Around { checker, node, sides };
         notes.nodes.extend(around.compatibility(node, 0..2));
         notes.nodes.extend(around.torsion());
-        notes.nodes.extend(around.neighbourhood(&segment));
+        if let Some(pair) = Pair::of(&around) {
+            notes.nodes.push(pair.bend(&segment));
+            notes.nodes.extend(pair.twist(spatial));
+        }
     }
-    let calls = Calls::of_polygon(polygon, &checker.tolerances());
     let coplanar = Calls::of(Criterion::Coplanarity);
     for i in (0..n).filter(|&i| calls[i].any(coplanar)) {
         notes.oscillations.push(oscillation(checker, i, &segment(i)));
@@ -196,64 +214,6 @@ impl Around<'_, '_> {
             // Zero is one of the two ways out.
             self.record(NodeCondition::TorsionChange, value >= 0.0, margin)
         })
-    }
-
-    /// Definition 8.2: the segments `i−1` and `i` together, with node `i` left out.
-    fn neighbourhood(&self, segment: &impl Fn(usize) -> Segment) -> Option<NodeRecord> {
-        let polygon = self.checker.polygon();
-        let (n, node, zero) = (polygon.segments(), self.node, self.checker.tolerances().zero);
-        let [l0, l1] = polygon.directions_at(node);
-        if polygon.binormal(node).length() > zero || l0.dot(l1) <= 0.0 {
-            return None;
-        }
-        let (before, after) = ((node + n - 1) % n, (node + 1) % n);
-        let end = if after == 0 && !polygon.is_closed() { n } else { after };
-        if polygon.boundary() == Boundary::ZeroCurvature && (before == 0 || end == n) {
-            return None;
-        }
-        let [p, q] = [before, end].map(|i| polygon.binormal(i));
-        if p.length() <= zero || q.length() <= zero {
-            return None;
-        }
-        let normals = [p.normalize_or_zero(), q.normalize_or_zero()];
-        let joined = Segment::joined(&self.sides[0], &self.sides[1]);
-        let inflects = normals[0].dot(normals[1]) < -zero;
-        let criterion = if inflects { Criterion::Inflection } else { Criterion::Convexity };
-        let (calls, cones) = (Calls::of(criterion), Cones::none());
-        let question = Question { criterion, calls, normals, cones };
-        let mut margin = measure(&joined, &question);
-        let keeps = if inflects {
-            decide(&joined, &question) == Sign::Positive
-        } else {
-            // Equality is all that a curve through the node can reach.
-            margin.value >= -zero
-        };
-        // Local parameter 0.5 is the node.
-        let (u, s) = (self.u(before), margin.at);
-        let h = [polygon.spacing(before), polygon.spacing(node % n)];
-        margin.at =
-            if s < 0.5 { u + 2.0 * s * h[0] } else { self.u(node) + (2.0 * s - 1.0) * h[1] };
-
-        // The nodes beside; beyond an open end there is no segment, and one side is all there is.
-        let beside = |at: usize| {
-            let closed = polygon.is_closed();
-            let left = if at > 0 { Some(at - 1) } else { closed.then_some(n - 1) };
-            let right = if at < n { Some(at) } else { closed.then_some(0) };
-            let present = usize::from(left.is_none())..1 + usize::from(right.is_some());
-            let sides = [left, right].map(|i| segment(i.unwrap_or(before)));
-            Around { checker: self.checker, node: at, sides }.compatibility(at, present)
-        };
-        let mut satisfied = keeps;
-        for compatible in [beside(before), beside(end)].into_iter().flatten() {
-            satisfied &= compatible.satisfied;
-            margin = margin.least(Margin { value: compatible.margin, at: compatible.location });
-        }
-        let condition = if inflects {
-            NodeCondition::InflectionNeighbourhood
-        } else {
-            NodeCondition::ConvexNeighbourhood
-        };
-        Some(self.record(condition, satisfied, margin))
     }
 }
 

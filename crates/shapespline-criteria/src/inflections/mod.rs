@@ -5,21 +5,34 @@
 //! of `w·K`, where `K` is `γ'×γ''` up to positive factors, and `u⁻×u⁺` at a corner (5.2). The inflection
 //! count `I` is the most over all directions.
 //!
-//! For polygons that maximum is found exactly (Definition 5.4). For a curve in a plane it is the count
-//! seen from the normal (Corollary 5.3); for one cubic that is not planar it is 2 (Theorem 7.2). For other
-//! curves in space the count is *attained*, by a direction that is handed back, but another direction
-//! might show more: it is found as the exact maximum over ever more values of `K`, and says so.
+//! For polygons and for curves of polynomial pieces up to degree three that maximum is found exactly, by
+//! walks along what divides the directions that see different numbers (`sweep`): the great circles
+//! normal to the `V_i`, or to `K` where pieces meet, and the curve of tangents itself, along which two
+//! inflections fall together. For a curve in a plane it is the count seen from the normal (Corollary
+//! 5.3); one cubic that is not planar has 2 (Theorem 7.2). For other curves in space the count is
+//! *attained*, by a direction that is handed back, but another direction might show more: it is the
+//! exact maximum over ever more values of `K`, and says so.
+
+mod roots;
+mod sequence;
+mod sweep;
+mod walk;
+
+use std::ops::ControlFlow;
 
 use glam::DVec3;
 use shapespline_geometry::{Dimension, InputError, PiecewiseBezier, normalize};
 
-use crate::{
-    general::{Segment, corners},
-    sign_changes::{Direction, most, strict},
+use self::{
+    sequence::{STRAIGHT, Sequence},
+    sweep::most,
+    walk::Most,
 };
+use crate::general::{Segment, corners};
 
 /// Number of inflections, and a direction that shows them.
-#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct InflectionCount {
     /// The number.
     pub count: usize,
@@ -30,11 +43,9 @@ pub struct InflectionCount {
     pub exact: bool,
 }
 
-/// Sine of the turning angle below which three points count as collinear.
-const STRAIGHT: f64 = 1e-9;
-
 /// The inflection count of a polygon: in space the most seen from any direction, in the plane the
-/// one there is. Exact; cost O(n² log n) in space, O(n) in the plane.
+/// one there is. Exact, where directions that rounding cannot tell apart count as one; cost
+/// O(n² log n) in space, O(n) in the plane, memory O(n).
 ///
 /// # Errors
 /// Points that are not finite, repeated neighbours.
@@ -42,12 +53,35 @@ pub fn polygon_inflections(
     points: &[DVec3],
     dimension: Dimension,
 ) -> Result<InflectionCount, InputError> {
-    if dimension == Dimension::Two {
-        return polygon_inflections_from(points, DVec3::Z);
-    }
-    let (count, direction) = most(&turns(points)?);
-    Ok(InflectionCount { count, direction, exact: true })
+    let count = polygon_inflections_with(points, dimension, &|| ControlFlow::Continue(()))?;
+    Ok(count.unwrap_or(NONE))
 }
+
+/// As [`polygon_inflections`], with a question whether to go on, which is asked every few hundred
+/// microseconds (from any thread); no count if it breaks off.
+///
+/// # Errors
+/// Points that are not finite, repeated neighbours.
+pub fn polygon_inflections_with(
+    points: &[DVec3],
+    dimension: Dimension,
+    go_on: &(dyn Fn() -> ControlFlow<()> + Sync),
+) -> Result<Option<InflectionCount>, InputError> {
+    if dimension == Dimension::Two {
+        return polygon_inflections_from(points, DVec3::Z).map(Some);
+    }
+    let turns = turns(points)?;
+    let sequence = Sequence::of_vectors(turns.iter().copied());
+    let seen = |direction: DVec3| InflectionCount {
+        count: changes(&turns, direction),
+        direction,
+        exact: true,
+    };
+    Ok(most(&sequence, go_on).map(|most| witness(&most, &sequence, seen)))
+}
+
+/// Of curves and points that do not turn.
+const NONE: InflectionCount = InflectionCount { count: 0, direction: DVec3::Z, exact: true };
 
 /// The inflections of a polygon seen from a direction. Cost O(n).
 ///
@@ -58,13 +92,23 @@ pub fn polygon_inflections_from(
     direction: DVec3,
 ) -> Result<InflectionCount, InputError> {
     let direction = unit(direction)?;
-    let turns = turns(points)?;
-    let count = strict(turns.iter().map(|t| t.v.dot(direction)), 8.0 * f64::EPSILON);
+    let count = changes(&turns(points)?, direction);
     Ok(InflectionCount { count, direction, exact: true })
 }
 
-/// The unit vectors along `V_i`, where the polygon turns.
-fn turns(points: &[DVec3]) -> Result<Vec<Direction>, InputError> {
+/// Strict sign changes of the unit vectors seen along a direction.
+fn changes(turns: &[(DVec3, f64)], direction: DVec3) -> usize {
+    let (mut changes, mut last) = (0, 0.0);
+    let zero = 8.0 * f64::EPSILON;
+    for x in turns.iter().map(|t| t.0.dot(direction)).filter(|x| x.abs() > zero) {
+        changes += usize::from(last * x < 0.0);
+        last = x.signum();
+    }
+    changes
+}
+
+/// The unit vectors along `V_i`, where the polygon turns, with what rounding can have turned them by.
+fn turns(points: &[DVec3]) -> Result<Vec<(DVec3, f64)>, InputError> {
     if let Some(index) = points.iter().position(|p| !p.is_finite()) {
         let coordinates = points[index].to_array();
         let value = coordinates.into_iter().find(|x| !x.is_finite()).unwrap_or(f64::NAN);
@@ -79,9 +123,9 @@ fn turns(points: &[DVec3]) -> Result<Vec<Direction>, InputError> {
     Ok(bends.map(|v| towards(v, 4.0 * f64::EPSILON)).collect())
 }
 
-/// The direction of a vector that carries an error of some size.
-fn towards(v: DVec3, error: f64) -> Direction {
-    Direction { v: v.normalize(), error: error / v.length() + f64::EPSILON }
+/// The direction of a vector that carries an error of some size, and how far that can have turned it.
+fn towards(v: DVec3, error: f64) -> (DVec3, f64) {
+    (v.normalize(), error / v.length() + f64::EPSILON)
 }
 
 fn unit(direction: DVec3) -> Result<DVec3, InputError> {
@@ -106,34 +150,82 @@ pub fn curve_inflections_from(
 }
 
 /// The most inflections of a curve over all directions; in the plane the ones there are.
+///
+/// Of polynomial pieces up to degree three the maximum is exact (see [`InflectionCount::exact`]), cost
+/// O(n² log n), memory O(n) for n pieces. Pieces whose osculating planes agree to `1e−9` where they meet
+/// count as smooth.
 #[must_use]
 pub fn curve_inflections(curve: &PiecewiseBezier) -> InflectionCount {
+    curve_inflections_with(curve, &|| ControlFlow::Continue(())).unwrap_or(NONE)
+}
+
+/// As [`curve_inflections`], with a question whether to go on, which is asked every few hundred
+/// microseconds (from any thread); no count if it breaks off.
+#[must_use]
+pub fn curve_inflections_with(
+    curve: &PiecewiseBezier,
+    go_on: &(dyn Fn() -> ControlFlow<()> + Sync),
+) -> Option<InflectionCount> {
     let segment = pieces(curve);
     if curve.dimension() == Dimension::Two {
-        return seen_from(&segment, DVec3::Z);
+        return Some(seen_from(&segment, DVec3::Z));
     }
-    let mut best = InflectionCount { count: 0, direction: DVec3::Z, exact: true };
+    let seen = |direction: DVec3| seen_from(&segment, direction);
+    if let Some(sequence) = Sequence::of_cubics(&segment) {
+        let most = most(&sequence, go_on)?;
+        let found = witness(&most, &sequence, seen);
+        let exact = found.exact && !sequence.open && most.upper <= found.count;
+        return Some(InflectionCount { exact, ..found });
+    }
+    let mut best = InflectionCount { exact: false, ..NONE };
     // No more values than take a second or so.
-    let budget = (4096 / segment.pieces.len()).max(2);
+    let budget = 4096 / segment.pieces.len();
     let mut steps = 4;
     loop {
         let bends = bends(&segment, steps);
         let planar = is_planar(&bends);
-        let (_, direction) = most(&bends);
-        let seen = seen_from(&segment, direction);
-        let grown = seen.count > best.count;
+        let sequence = Sequence::of_vectors(bends);
+        let found = witness(&most(&sequence, go_on)?, &sequence, seen);
+        let grown = found.count > best.count;
         if grown || steps == 4 {
             // `ω` of a polynomial piece of degree d has degree 2d − 4.
             let d = curve.degree();
             let single = segment.pieces.len() == 1 && !curve.is_rational();
-            let full = single && seen.count >= (2 * d).saturating_sub(4);
-            best = InflectionCount { exact: seen.exact && (planar || full), ..seen };
+            let full = single && found.count >= (2 * d).saturating_sub(4);
+            best = InflectionCount { exact: found.exact && (planar || full), ..found };
         }
         steps *= 2;
         if best.exact || (!grown && steps > 16) || steps > budget.max(8) {
-            return best;
+            return Some(best);
         }
     }
+}
+
+/// Halvings of the distance from the boundary of a cell.
+const HALVINGS: usize = 50;
+
+/// The count in the cell that a walk has found, seen from within it.
+fn witness(
+    most: &Most,
+    sequence: &Sequence,
+    seen: impl Fn(DVec3) -> InflectionCount,
+) -> InflectionCount {
+    // Half way to the nearest great circle; the nearest arc may be nearer.
+    let distances = sequence.lines.iter().map(|line| line.v.dot(most.boundary).abs());
+    let own = |d: &f64| *d > 1e-12;
+    let mut step = 0.5 * distances.filter(own).fold(1.0, f64::min);
+    let mut best = seen((most.boundary + most.inwards * step).normalize());
+    for _ in 0..HALVINGS {
+        if best.count >= most.count && best.exact {
+            break;
+        }
+        step *= 0.5;
+        let next = seen((most.boundary + most.inwards * step).normalize());
+        if (next.count, next.exact) > (best.count, best.exact) {
+            best = next;
+        }
+    }
+    best
 }
 
 /// All pieces as one segment; between them only directions matter.
@@ -171,7 +263,7 @@ fn seen_from(segment: &Segment, direction: DVec3) -> InflectionCount {
 }
 
 /// Unit vectors along `K` at `steps + 1` parameters a piece, where it does not vanish.
-fn bends(segment: &Segment, steps: usize) -> Vec<Direction> {
+fn bends(segment: &Segment, steps: usize) -> Vec<(DVec3, f64)> {
     let mut bends = Vec::new();
     let mut joints = corners(segment);
     for piece in &segment.pieces {
@@ -186,6 +278,6 @@ fn bends(segment: &Segment, steps: usize) -> Vec<Direction> {
     bends
 }
 
-fn is_planar(bends: &[Direction]) -> bool {
-    bends.iter().all(|w| w.v.cross(bends[0].v).length() <= 1e-8)
+fn is_planar(bends: &[(DVec3, f64)]) -> bool {
+    bends.iter().all(|w| w.0.cross(bends[0].0).length() <= 1e-8)
 }

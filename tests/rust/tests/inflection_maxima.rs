@@ -1,0 +1,227 @@
+//! The most inflections of piecewise cubics over all directions, against samples, and against what must
+//! not change it.
+#![allow(clippy::unwrap_used, clippy::panic, reason = "test code")]
+
+use shapespline::criteria::{
+    curve_inflections, curve_inflections_from, curve_inflections_with, polygon_inflections,
+    polygon_inflections_with,
+};
+use shapespline::geometry::PiecewiseBezier;
+use shapespline::prelude::*;
+use shapespline_tests::generate::{Kind, Random};
+
+/// A piecewise cubic in space through random points: with continuous curvature (a B-spline), with
+/// continuous tangents, or with corners.
+fn spatial(smoothness: usize, n: usize, random: &mut Random) -> PiecewiseBezier {
+    let breaks: Vec<f64> = (0..=n).map(|i| i as f64).collect();
+    let points: Vec<DVec3> = (0..n + 3)
+        .scan(DVec3::ZERO, |at, _| {
+            *at += random.vector();
+            Some(*at)
+        })
+        .collect();
+    if smoothness == 2 {
+        let knots: Vec<f64> = (0..n + 7).map(|i| i as f64).collect();
+        return PiecewiseBezier::from_bspline(&knots, &points, 3, Dimension::Three).unwrap();
+    }
+    let tangents: Vec<DVec3> = (0..=n).map(|_| random.vector() * 0.4).collect();
+    let inner = |i: usize, random: &mut Random| match smoothness {
+        1 => [points[i] + tangents[i], points[i + 1] - tangents[i + 1]],
+        _ => [points[i] + random.vector(), points[i + 1] + random.vector()],
+    };
+    let piece = |i: usize| {
+        let [p, q] = inner(i, random);
+        [points[i], p, q, points[i + 1]]
+    };
+    let control: Vec<DVec3> = (0..n).flat_map(piece).collect();
+    PiecewiseBezier::new(breaks, &control, 3, Dimension::Three).unwrap()
+}
+
+/// The count seen from a direction by plain evaluation of `w·(γ'×γ'')`, and of the turns at corners.
+fn sampled(curve: &PiecewiseBezier, w: DVec3) -> usize {
+    let mut signs = Vec::new();
+    let leg = |i: usize, k: usize| {
+        let p = curve.piece(i);
+        (p[k + 1] - p[k]).truncate()
+    };
+    for i in 0..curve.pieces() {
+        let [a, b, c] = [0, 1, 2].map(|k| leg(i, k));
+        for k in 0..=200 {
+            let t = f64::from(k) / 200.0;
+            let s = 1.0 - t;
+            let d1 = a * (s * s) + b * (2.0 * s * t) + c * (t * t);
+            let d2 = (b - a) * s + (c - b) * t;
+            signs.push(w.dot(d1.cross(d2)) > 0.0);
+        }
+        if i + 1 < curve.pieces() {
+            let turn = c.normalize().cross(leg(i + 1, 0).normalize());
+            if turn.length() > 1e-9 {
+                signs.push(w.dot(turn) > 0.0);
+            }
+        }
+    }
+    signs.windows(2).filter(|s| s[0] != s[1]).count()
+}
+
+/// No direction shows more than the maximum, which its own direction shows; and mostly some random one
+/// shows as many (it need not: cells can be small).
+#[test]
+fn the_maximum_over_all_directions_of_piecewise_cubics() {
+    let mut random = Random::new(77);
+    let (mut cases, mut reached, mut exact) = (0, 0, 0);
+    for smoothness in 0..3 {
+        for case in 0..60 {
+            let n = 1 + case % 6;
+            let curve = spatial(smoothness, n, &mut random);
+            let most = curve_inflections(&curve);
+            let seen = curve_inflections_from(&curve, most.direction).unwrap();
+            assert_eq!((seen.count, seen.exact), (most.count, true), "{smoothness} {case}");
+            let samples = 1500;
+            let shown = (0..samples).map(|_| sampled(&curve, random.vector())).max().unwrap();
+            assert!(shown <= most.count, "{smoothness} {case}: {shown} > {}", most.count);
+            cases += 1;
+            reached += usize::from(shown == most.count);
+            exact += usize::from(most.exact);
+        }
+    }
+    println!(
+        "{cases} curves: sampling reaches the maximum of {reached}, {exact} maxima are certain"
+    );
+    assert!(reached * 2 > cases, "{reached} of {cases}");
+    assert!(exact * 100 >= cases * 99, "{exact} of {cases}");
+}
+
+/// Where a smooth piece of one cubic is cut, and which way it is run through, makes no difference.
+#[test]
+fn the_maximum_does_not_depend_on_the_pieces() {
+    let mut random = Random::new(78);
+    for case in 0..100 {
+        let curve = spatial(case % 3, 1 + case % 7, &mut random);
+        let expected = curve_inflections(&curve).count;
+        let breaks = curve.breaks();
+        let mut cut_breaks = vec![breaks[0]];
+        let (mut cut, mut backwards) = (Vec::new(), Vec::new());
+        for i in 0..curve.pieces() {
+            let p: Vec<DVec3> = curve.piece(i).iter().map(|p| p.truncate()).collect();
+            let part = random.within(0.2, 0.8);
+            let (left, right) = shapespline::geometry::polynomial::split(&p, part);
+            cut.extend(left);
+            cut.extend(right);
+            cut_breaks.push(breaks[i] + part * (breaks[i + 1] - breaks[i]));
+            cut_breaks.push(breaks[i + 1]);
+        }
+        for i in (0..curve.pieces()).rev() {
+            backwards.extend(curve.piece(i).iter().rev().map(|p| p.truncate()));
+        }
+        let cut = PiecewiseBezier::new(cut_breaks, &cut, 3, Dimension::Three).unwrap();
+        let count = curve_inflections(&cut);
+        assert_eq!((count.count, count.exact), (expected, true), "case {case}, cut");
+        let back = PiecewiseBezier::new(breaks.to_vec(), &backwards, 3, Dimension::Three).unwrap();
+        assert_eq!(curve_inflections(&back).count, expected, "case {case}, backwards");
+    }
+}
+
+/// Planar pieces in different planes, straight ones among them: each looks from everywhere as it does
+/// in its plane, so the most is that of the polygon of their osculating planes.
+#[test]
+fn planar_pieces_count_like_a_polygon() {
+    let mut random = Random::new(79);
+    for case in 0..50 {
+        let points = Kind::Walk.points(3 + case % 8, &mut random);
+        let n = points.len() - 1;
+        // Rounded corners: a quadratic around each inner point, straight pieces between.
+        let middle = |i: usize| (points[i] + points[i + 1]) * 0.5;
+        let third = |p: DVec3, q: DVec3| [p, p.lerp(q, 0.3), p.lerp(q, 0.7), q];
+        let mut control = third(points[0], middle(0)).to_vec();
+        for i in 1..n {
+            let (p, q) = (middle(i - 1), middle(i));
+            control.extend([p, p.lerp(points[i], 2.0 / 3.0), q.lerp(points[i], 2.0 / 3.0), q]);
+        }
+        control.extend(third(middle(n - 1), points[n]));
+        let breaks = (0..=n + 1).map(|i| i as f64).collect();
+        let curve = PiecewiseBezier::new(breaks, &control, 3, Dimension::Three).unwrap();
+        let polygon = polygon_inflections(&points, Dimension::Three).unwrap();
+        let count = curve_inflections(&curve);
+        assert_eq!((count.count, count.exact), (polygon.count, true), "case {case}");
+    }
+}
+
+/// Where a closed curve begins, its first and its last knot are in one place of the sphere.
+#[test]
+fn closed_curves_have_certain_maxima() {
+    let mut random = Random::new(81);
+    let mut exact = 0;
+    for case in 0..60 {
+        let mut points: Vec<DVec3> = (0..4 + case % 7).map(|_| random.vector()).collect();
+        points.push(points[0]);
+        let chordal = Parametrization::Chordal;
+        let polygon = DataPolygon::new(points, &chordal, Boundary::Periodic).unwrap();
+        let spline = NuSpline::new(polygon, Tension::Uniform(0.0)).unwrap();
+        let curve = PiecewiseBezier::from(spline.curve());
+        let most = curve_inflections(&curve);
+        let shown = (0..1500).map(|_| sampled(&curve, random.vector())).max().unwrap();
+        assert!(shown <= most.count, "{case}: {shown} > {}", most.count);
+        exact += usize::from(most.exact);
+    }
+    assert!(exact >= 58, "{exact}");
+}
+
+/// Lines, points, cusps, pieces run through twice, and any scale: a count comes back, and what its
+/// direction shows is no more.
+#[test]
+fn degenerate_curves_have_counts() {
+    let mut random = Random::new(82);
+    let make = |control: &[DVec3]| {
+        let breaks = (0..=control.len() / 4).map(|i| i as f64).collect();
+        PiecewiseBezier::new(breaks, control, 3, Dimension::Three).unwrap()
+    };
+    let check = |control: &[DVec3]| {
+        let curve = make(control);
+        let most = curve_inflections(&curve);
+        let seen = curve_inflections_from(&curve, most.direction).unwrap();
+        assert!(seen.count == most.count && most.direction.is_normalized(), "{control:?}");
+        most.count
+    };
+    let p: Vec<DVec3> = (0..40).map(|_| random.vector()).collect();
+    assert_eq!(check(&[p[0]; 8]), 0);
+    assert_eq!(check(&[0.0, 1.0, 2.0, 3.0, 3.0, 2.0, 1.0, 5.0].map(|x| p[0] * x)), 0);
+    // A cusp inside, legs of zero at the ends, a piece that goes back on itself.
+    let cusp = [p[0], p[0] + p[1] + p[2], p[0] + p[1] - p[2], p[0] + p[1] * 2.0 - p[2] * 0.1];
+    check(&cusp);
+    check(&[p[0], p[0], p[1], p[2], p[2], p[3], p[4], p[4]]);
+    let there: Vec<DVec3> = p[..4].to_vec();
+    let back: Vec<DVec3> = there.iter().rev().copied().collect();
+    let twice = [there.clone(), back].concat();
+    assert!(check(&twice) >= 2);
+    // Nearly planar, nearly straight, at any scale.
+    for flat in [1e-3, 1e-6, 1e-8, 1e-9, 1e-10, 1e-12, 1e-15] {
+        for scale in [1e-100, 1.0, 1e100] {
+            for sides in [DVec3::new(1.0, 1.0, flat), DVec3::new(1.0, flat, flat)] {
+                let control: Vec<DVec3> = p.iter().map(|p| *p * sides * scale).collect();
+                check(&control[..24]);
+            }
+        }
+    }
+    for scale in [1e-100, 1e100] {
+        let control: Vec<DVec3> = p.iter().map(|p| *p * scale).collect();
+        assert_eq!(check(&control), check(&p));
+    }
+}
+
+#[test]
+fn a_count_can_be_broken_off() {
+    use std::ops::ControlFlow;
+    use std::sync::atomic::{AtomicUsize, Ordering};
+
+    let mut random = Random::new(80);
+    let curve = spatial(2, 400, &mut random);
+    let points = Kind::Walk.points(400, &mut random);
+    let asked = AtomicUsize::new(0);
+    let go_on = || {
+        let asked = asked.fetch_add(1, Ordering::Relaxed);
+        if asked < 20 { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+    };
+    assert_eq!(curve_inflections_with(&curve, &go_on), None);
+    assert_eq!(polygon_inflections_with(&points, Dimension::Three, &go_on).unwrap(), None);
+    assert!(asked.load(Ordering::Relaxed) < 200);
+}
