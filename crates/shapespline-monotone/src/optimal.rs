@@ -9,11 +9,16 @@
 //! It begins with the conditions on whole segments; as minima of p appear, segments are cut there and the cuts follow
 //! ([`parts`]). One step eliminates one block-tridiagonal system with 2×2 blocks and uses its factors twice: O(N).
 //! One barrier parameter serves all conditions: with one a segment, in proportion to its energy, steep segments beside
-//! gentle ones need many times the steps.
+//! gentle ones need many times the steps (on steps over twelve decades more than 200, mostly without an end).
 //!
 //! **Guarantee.** Every iterate satisfies the conditions strictly, so the result is monotone whatever the number of
 //! steps. If the unconstrained optimum (the natural cubic spline) is monotone, it is the answer, in one step. The
 //! iteration ends when a lower bound for the exact problem ([`certificate`]) is within [`ENOUGH`] of the energy.
+//!
+//! Measured (example `optimal`, 300 sets a kind): on 20 points 8 steps for uniform data on a grid, 14 for exponential
+//! or lognormal steps in both directions, 12 over twelve decades; on 64 points 11–17. All within [`ENOUGH`] but some
+//! of those over ten and more decades (one in a hundred, within 2 %). Against the conditions on sixty-four parts of
+//! every segment (Clarabel): at most 0.2 % above.
 
 mod certificate;
 pub(crate) mod parts;
@@ -36,8 +41,9 @@ const GAP: f64 = 5e-3;
 const ENOUGH: f64 = 3.5e-3;
 /// The same from which the result counts as found.
 const PROMISE: f64 = 5e-3;
-/// Barrier parameter at the start in units of the largest segment's energy scale.
-const START: f64 = 0.1;
+/// Barrier parameter at the start in units of the largest segment's energy scale; the second when the iteration from
+/// the first got stuck (one in some thousand).
+const STARTS: [f64; 2] = [0.1, 3.0];
 /// A segment without cuts and with all inner coefficients above this is left alone.
 const CLEAR: f64 = 1.0;
 /// Products λz of conditions that come anew stay within this factor of the barrier parameter.
@@ -66,11 +72,23 @@ pub(crate) fn optimise(data: &Data, fairness: Fairness) -> Optimum {
         let d = vec![data.delta[0]; 2];
         return Optimum { d, s: vec![0.0; 2], steps: 1, converged: true, ..Optimum::default() };
     }
-    let mut problem = Problem::new(data, fairness);
-    let mut optimum = problem.run();
-    optimum.d = problem.v.iter().map(|v| v[0]).collect();
-    optimum.s = problem.v.iter().map(|v| v[1]).collect();
-    optimum
+    let mut found = Optimum { gap: f64::INFINITY, ..Optimum::default() };
+    let mut steps = 0;
+    for start in STARTS {
+        let mut problem = Problem::new(data, fairness);
+        let mut optimum = problem.run(start);
+        steps += optimum.steps;
+        if optimum.gap < found.gap || found.d.is_empty() {
+            optimum.d = problem.v.iter().map(|v| v[0]).collect();
+            optimum.s = problem.v.iter().map(|v| v[1]).collect();
+            found = optimum;
+        }
+        if found.converged {
+            break;
+        }
+    }
+    found.steps = steps;
+    found
 }
 
 /// What is free at a node: (slope, second derivative). At a flat neither, at a turn only the second.
@@ -247,7 +265,7 @@ impl<'a> Problem<'a> {
         (0..self.data.len()).all(|i| self.is_monotone(i))
     }
 
-    fn run(&mut self) -> Optimum {
+    fn run(&mut self, start: f64) -> Optimum {
         let n = self.data.len();
         let mut outcome = Optimum { steps: 1, ..Optimum::default() };
         if self.solve_unconstrained() {
@@ -265,7 +283,7 @@ impl<'a> Problem<'a> {
         self.before.reserve(6 * n);
         for i in 0..n {
             self.segments[i].first = self.conditions.len();
-            self.condition(i, START * 35.0 * scale, None);
+            self.condition(i, start * 35.0 * scale, None);
         }
         let mut inside = self.v.clone();
         let mut residual = 1.0;

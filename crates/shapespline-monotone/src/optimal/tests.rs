@@ -31,7 +31,7 @@ fn within_half_a_per_cent_of_the_reference() {
         for case in 0..cases {
             let data = random(&mut rng, n, decades);
             let mut problem = Problem::new(&data, Fairness::Bending);
-            let found = problem.run();
+            let found = problem.run(STARTS[0]);
             let d: Vec<f64> = problem.v.iter().map(|v| v[0]).collect();
             let s: Vec<f64> = problem.v.iter().map(|v| v[1]).collect();
             let ours = energy::total(&data, Fairness::Bending, &d, &s);
