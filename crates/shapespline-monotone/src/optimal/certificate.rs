@@ -128,7 +128,7 @@ impl Problem<'_> {
             if i < n && self.segments[i].e > 0.0 {
                 let s = self.segments[i];
                 let mut l = self.functionals[i];
-                bound += dot(&l, &super::bernstein(&s.local(self.v[i], self.v[i + 1])));
+                bound += dot(&l, &super::conditions::bernstein(&s.local(self.v[i], self.v[i + 1])));
                 let size: f64 = l.iter().map(|m| m.abs()).sum();
                 let (p, q) = (self.free[i], self.free[i + 1]);
                 if !p.0 {

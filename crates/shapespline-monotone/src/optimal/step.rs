@@ -42,7 +42,7 @@ impl Problem<'_> {
             let mut next = ([0.0; 3], [0.0; 4], [0.0; 2]);
             if i < n && self.segments[i].e > 0.0 {
                 let (m, r) = self.local_system(i);
-                let super::Segment { a, b, .. } = self.segments[i];
+                let super::conditions::Segment { a, b, .. } = self.segments[i];
                 diagonal[0] += a * (a * m[0]);
                 diagonal[1] += a * (b * m[1]);
                 diagonal[2] += b * (b * m[4]);
