@@ -44,7 +44,8 @@ const ENOUGH: f64 = 3.5e-3;
 /// The same from which the result counts as found.
 const PROMISE: f64 = 5e-3;
 /// Barrier parameter at the start in units of the largest segment's energy scale; the second when the iteration from
-/// the first got stuck (one in a hundred over twelve decades, none in a thousand sets of tamer steps).
+/// the first got stuck (of 20 points: up to one in a hundred sets over ten and more decades or with turns, none of 200
+/// of each tamer kind).
 const STARTS: [f64; 2] = [0.1, 3.0];
 /// Slopes, second derivatives and how they were found; scaled units.
 #[derive(Debug, Clone, Default)]
