@@ -54,7 +54,6 @@ mod reference;
 pub mod second_opinion;
 mod slopes;
 mod spline;
-mod subdivision;
 mod windows;
 
 #[cfg(doctest)]

@@ -3,8 +3,9 @@
 
 use crate::data::Data;
 use crate::energy::{Fairness, HESSIAN, is_flat, weight};
+use crate::optimal::parts::{gradient, rows};
+use crate::quartic_form::basis;
 use crate::slopes::sign;
-use crate::subdivision::table;
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{
     DefaultSettingsBuilder, DefaultSolver, IPSolver, NonnegativeConeT, ZeroConeT,
@@ -87,9 +88,11 @@ pub(crate) fn optimal(data: &Data, fairness: Fairness, level: u8) -> (Vec<f64>, 
                 }
             }
         }
-        for part in (1u8 << level)..(2u8 << level) {
-            let rows = &table()[usize::from(part)];
-            for (row, gradient) in rows.value.iter().zip(&rows.gradient) {
+        let parts = f64::from(1u32 << level);
+        for part in 0..1u32 << level {
+            let (from, to) = (f64::from(part) / parts, f64::from(part + 1) / parts);
+            for row in std::iter::once(basis(from)).chain(rows(from, to)) {
+                let gradient = gradient(&row);
                 // value = row·(1,…,1) + gradient·(a, b, …) with a = d/Δ − 1.
                 let constant = 1.0 - gradient[0] - gradient[2];
                 debug_assert!((row.iter().sum::<f64>() - 1.0).abs() < 1e-12);

@@ -209,6 +209,14 @@ fn scales_and_reflections() {
             .collect()
     };
     let base = run(&x, &y, &queries);
+    // The optimal one is where an iteration stopped, which magnifies rounding errors of the data on its way.
+    let close = |a: &[Vec<f64>], b: &[Vec<f64>], unit: f64, label: &str| {
+        for ((a, b), room) in a.iter().zip(b).zip([1e-9, 1e-6, 1e-9]) {
+            for (a, b) in a.iter().zip(b) {
+                assert!((a * unit - b).abs() <= room * unit, "{label}: {a} {}", b / unit);
+            }
+        }
+    };
     let scaled = |v: &[f64], s: f64| v.iter().map(|v| v * s).collect::<Vec<_>>();
     for (sx, sy) in
         [(2f64.powi(300), 2f64.powi(-300)), (2f64.powi(-300), 2f64.powi(300)), (1.0, -1.0)]
@@ -220,15 +228,10 @@ fn scales_and_reflections() {
     }
     for (sx, sy) in [(1e100, 1e100), (1e-100, 1e-100), (1e100, 1e-100), (1e-90, 1e100)] {
         let other = run(&scaled(&x, sx), &scaled(&y, sy), &scaled(&queries, sx));
-        for (a, b) in base.iter().flatten().zip(other.iter().flatten()) {
-            assert!((a * sy - b).abs() <= 1e-9 * sy, "scales {sx:e} {sy:e}: {a} {}", b / sy);
-        }
+        close(&base, &other, sy, &format!("scales {sx:e} {sy:e}"));
     }
     let back = |v: &[f64], s: f64| v.iter().rev().map(|v| s * v).collect::<Vec<_>>();
     let other = run(&back(&x, -1.0), &back(&y, 1.0), &back(&queries, -1.0));
-    for (a, b) in base.iter().zip(&other) {
-        for (a, b) in a.iter().zip(b.iter().rev()) {
-            assert!((a - b).abs() <= 1e-9, "{a} {b}");
-        }
-    }
+    let turned: Vec<Vec<f64>> = other.iter().map(|b| back(b, 1.0)).collect();
+    close(&base, &turned, 1.0, "reversal");
 }

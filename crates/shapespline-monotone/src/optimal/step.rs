@@ -1,86 +1,112 @@
-//! One interior-point step: the Newton system, its predictor and corrector, and the steps they allow.
+//! One interior-point step: the Newton system, its predictor and corrector, and the step they allow.
 
-use super::{Problem, Segment};
+use super::{FRACTION, Problem};
 use crate::energy::{self, HESSIAN};
-use crate::subdivision::Conditions;
 
-/// What a direction allows.
-pub(super) struct Look {
+/// What a step does.
+pub(super) struct Step {
+    /// The share of the direction that is taken.
     pub(super) length: f64,
-    pub(super) products: [f64; 3],
+    /// Σ λz after it.
+    pub(super) gap: f64,
 }
 
 impl Problem<'_> {
-    /// Assemble and eliminate `(∇²E + Σ w(λ/z) a aᵀ) δ = −∇E`; without conditions the energy alone, for the unknowns
+    /// Find the direction and its length; None when a slack or a multiplier is not positive any more.
+    pub(super) fn step(&mut self) -> Option<Step> {
+        self.assemble();
+        if !self.healthy {
+            return None;
+        }
+        // Predictor: the affine direction, towards complementarity 0.
+        let mut system = std::mem::take(&mut self.system);
+        let (now, ahead) = self.predict(system.solve());
+        let sigma = (ahead / now).max(0.0);
+        let mu = (sigma * sigma * sigma).max(1e-6) * now / self.conditions.len() as f64;
+        // Corrector: towards σμ, with the predictor's second-order term, on the same factors.
+        self.corrector(mu);
+        self.direction.copy_from_slice(system.solve_again(|i| self.rhs[i]));
+        self.system = system;
+        Some(self.correct(mu))
+    }
+
+    /// Assemble and eliminate `(∇²E + Σ (λ/z) g gᵀ) δ = −∇E`; without conditions the energy alone, for the unknowns
     /// themselves.
     pub(super) fn assemble(&mut self) {
         let n = self.data.len();
-        let constrained = self.mu > 0.0;
         self.system.clear();
         (self.energy, self.healthy) = (0.0, true);
         let mut diagonal = [0.0f64; 3];
         let mut rhs = [0.0f64; 2];
         for i in 0..=n {
-            let mut coupling = [0.0; 4];
-            let mut next_diagonal = [0.0; 3];
-            let mut next_rhs = [0.0; 2];
-            let node = &mut self.nodes[i];
-            if constrained && node.k < 2 {
-                node.z = node.unit * self.v[i][node.k];
-                self.healthy &= node.z > 0.0 && node.lambda > 0.0;
-                diagonal[2 * node.k] += node.unit * (node.unit * (node.w * (node.lambda / node.z)));
+            let mut next = ([0.0; 3], [0.0; 4], [0.0; 2]);
+            if i < n && self.segments[i].e > 0.0 {
+                let (m, r) = self.local_system(i);
+                let super::conditions::Segment { a, b, .. } = self.segments[i];
+                diagonal[0] += a * (a * m[0]);
+                diagonal[1] += a * (b * m[1]);
+                diagonal[2] += b * (b * m[4]);
+                rhs[0] += a * r[0];
+                rhs[1] += b * r[1];
+                next = (
+                    [a * (a * m[7]), a * (b * m[8]), b * (b * m[9])],
+                    [a * (a * m[2]), a * (b * m[3]), b * (a * m[5]), b * (b * m[6])],
+                    [a * r[2], b * r[3]],
+                );
             }
-            let free0 = node.free;
-            let mut free1 = (false, false);
-            if i < n {
-                free1 = self.nodes[i + 1].free;
-                let Segment { a, b, e, .. } = self.segments[i];
-                if e > 0.0 {
-                    let (m, r) = self.local_system(i, constrained);
-                    diagonal[0] += a * (a * m[0]);
-                    diagonal[1] += a * (b * m[1]);
-                    diagonal[2] += b * (b * m[4]);
-                    coupling = [a * (a * m[2]), a * (b * m[3]), b * (a * m[5]), b * (b * m[6])];
-                    next_diagonal = [a * (a * m[7]), a * (b * m[8]), b * (b * m[9])];
-                    rhs[0] += a * r[0];
-                    rhs[1] += b * r[1];
-                    next_rhs = [a * r[2], b * r[3]];
-                }
+            let (d, c, r) = self.pinned(i, diagonal, next.1, rhs);
+            if let Some(kept) = self.rhs.get_mut(i) {
+                *kept = r;
             }
-            // A fixed unknown: its row is the identity with right-hand side 0.
-            if !free0.0 {
-                (diagonal[0], diagonal[1], rhs[0]) = (1.0, 0.0, 0.0);
-                (coupling[0], coupling[1]) = (0.0, 0.0);
-            }
-            if !free0.1 {
-                (diagonal[2], diagonal[1], rhs[1]) = (1.0, 0.0, 0.0);
-                (coupling[2], coupling[3]) = (0.0, 0.0);
-            }
-            if !free1.0 {
-                (coupling[0], coupling[2]) = (0.0, 0.0);
-            }
-            if !free1.1 {
-                (coupling[1], coupling[3]) = (0.0, 0.0);
-            }
-            self.descent[i] = rhs;
-            self.system.push(diagonal, coupling, rhs);
-            (diagonal, rhs) = (next_diagonal, next_rhs);
+            self.system.push(d, c, r);
+            (diagonal, rhs) = (next.0, next.2);
         }
+    }
+
+    /// A row of the system with the fixed unknowns' rows made the identity, their right-hand sides 0.
+    #[inline]
+    pub(super) fn pinned(
+        &self,
+        i: usize,
+        mut d: [f64; 3],
+        mut c: [f64; 4],
+        mut r: [f64; 2],
+    ) -> ([f64; 3], [f64; 4], [f64; 2]) {
+        let (own, next) = (self.free[i], self.free.get(i + 1).copied().unwrap_or_default());
+        if !(own.0 && own.1) {
+            if !own.0 {
+                (d[0], d[1], r[0]) = (1.0, 0.0, 0.0);
+                (c[0], c[1]) = (0.0, 0.0);
+            }
+            if !own.1 {
+                (d[2], d[1], r[1]) = (1.0, 0.0, 0.0);
+                (c[2], c[3]) = (0.0, 0.0);
+            }
+        }
+        if !(next.0 && next.1) {
+            if !next.0 {
+                (c[0], c[2]) = (0.0, 0.0);
+            }
+            if !next.1 {
+                (c[1], c[3]) = (0.0, 0.0);
+            }
+        }
+        (d, c, r)
     }
 
     /// A segment's matrix (upper triangle, row by row) and −∇E in its dimensionless unknowns.
     #[inline]
-    fn local_system(&mut self, i: usize, constrained: bool) -> ([f64; 10], [f64; 4]) {
-        let segment = self.segments[i];
-        let Segment { a, b, e, w } = segment;
-        let (v0, v1) = (self.v[i], self.v[i + 1]);
-        let u = [a * v0[0] - 1.0, b * v0[1], a * v1[0] - 1.0, b * v1[1]];
+    fn local_system(&mut self, i: usize) -> ([f64; 10], [f64; 4]) {
+        let segment = &self.segments[i];
+        let e = segment.e;
+        let u = segment.local(self.v[i], self.v[i + 1]);
+        let x = [u[0] - 1.0, u[1], u[2] - 1.0, u[3]];
         let mut m = [0.0; 10];
         let mut r = [0.0; 4];
         let mut at = 0;
         for j in 0..4 {
             for k in 0..4 {
-                r[j] -= HESSIAN[j][k] * u[k];
+                r[j] -= HESSIAN[j][k] * x[k];
                 if k >= j {
                     m[at] = e * HESSIAN[j][k];
                     at += 1;
@@ -88,193 +114,107 @@ impl Problem<'_> {
             }
             r[j] *= e;
         }
-        self.energy += e * energy::local(u[0], u[1], u[2], u[3]);
-        if !constrained {
-            return (m, r);
-        }
-        let c = segment.bernstein(v0, v1);
+        self.energy += e * energy::local(x[0], x[1], x[2], x[3]);
+        let range = self.range(i);
         let mut healthy = true;
-        for block in &mut self.blocks[self.first[i] as usize..self.first[i + 1] as usize] {
-            let conditions = &self.table[usize::from(block.part)];
-            let z = values(conditions, &c);
-            let mut stiffness = [0.0; 4];
-            for j in 0..4 {
-                block.z[j] = if block.on[j] > 0.0 { z[j] } else { 1.0 };
-                healthy &= block.z[j] > 0.0 && block.lambda[j] >= 0.0;
-                block.iz[j] = 1.0 / block.z[j];
-                stiffness[j] = w * block.lambda[j] * block.iz[j];
-            }
-            let g = &conditions.by_unknown;
-            let mut at = 0;
-            for p in 0..4 {
-                let scaled = times(&stiffness, &g[p]);
-                for row in &g[p..] {
-                    m[at] += sum(&times(&scaled, row));
-                    at += 1;
-                }
-            }
+        for c in &mut self.conditions[range] {
+            let z = c.value(&u);
+            healthy &= z > 0.0 && c.lambda > 0.0;
+            c.iz = 1.0 / z;
+            let g = &c.g;
+            let s = c.lambda * c.iz;
+            let h = [s * g[0], s * g[1], s * g[2], s * g[3]];
+            m[0] += h[0] * g[0];
+            m[1] += h[0] * g[1];
+            m[2] += h[0] * g[2];
+            m[3] += h[0] * g[3];
+            m[4] += h[1] * g[1];
+            m[5] += h[1] * g[2];
+            m[6] += h[1] * g[3];
+            m[7] += h[2] * g[2];
+            m[8] += h[2] * g[3];
+            m[9] += h[3] * g[3];
         }
         self.healthy &= healthy;
         (m, r)
     }
 
-    /// Changes of the slacks along the affine direction, how far it may go, and Σ w(z + αdz)(λ + αdλ).
-    pub(super) fn predict(&mut self, step: &[[f64; 2]]) -> Look {
-        let mut shortest = 0.0f64;
-        let mut products = [0.0; 3];
-        for (node, d) in self.nodes.iter_mut().zip(step) {
-            if node.k < 2 {
-                node.az = node.unit * d[node.k];
-                let ratio = node.az / node.z;
+    /// Relative changes of the slacks along the affine direction; Σ λz now and as far as it may go.
+    fn predict(&mut self, step: &[[f64; 2]]) -> (f64, f64) {
+        let mut shortest = 1.0f64;
+        let (mut p0, mut p2) = (0.0, 0.0);
+        for i in 0..self.data.len() {
+            let du = self.segments[i].local(step[i], step[i + 1]);
+            let range = self.range(i);
+            for c in &mut self.conditions[range] {
+                let ratio = c.along(&du) * c.iz;
+                c.affine = ratio;
                 // dλ = −λ(1 + dz/z).
-                shortest = shortest.max(-ratio).max(1.0 + ratio);
-                let product = node.w * node.z * node.lambda;
-                products[0] += product;
-                products[1] -= product;
-                products[2] -= product * ratio * (1.0 + ratio);
+                shortest = larger(larger(shortest, -ratio), 1.0 + ratio);
+                let product = c.lambda / c.iz;
+                p0 += product;
+                p2 -= product * ratio * (1.0 + ratio);
             }
         }
-        let mut worst = [0.0f64; 4];
-        for i in 0..self.data.len() {
-            let segment = &self.segments[i];
-            let dc = segment.change(step[i], step[i + 1]);
-            let (mut p0, mut p2) = ([0.0; 4], [0.0; 4]);
-            for block in &mut self.blocks[self.first[i] as usize..self.first[i + 1] as usize] {
-                let az = values(&self.table[usize::from(block.part)], &dc);
-                for j in 0..4 {
-                    block.az[j] = az[j] * block.on[j];
-                    let ratio = block.az[j] * block.iz[j];
-                    worst[j] = worst[j].max(-ratio).max((1.0 + ratio) * block.on[j]);
-                    let product = block.z[j] * block.lambda[j];
-                    p0[j] += product;
-                    p2[j] -= product * ratio * (1.0 + ratio);
-                }
-            }
-            products[0] += segment.w * sum(&p0);
-            products[1] -= segment.w * sum(&p0);
-            products[2] += segment.w * sum(&p2);
-        }
-        let shortest = worst.iter().fold(shortest, |a, b| a.max(*b));
-        Look { length: 1.0 / shortest, products }
+        let length = 1.0 / shortest;
+        (p0, p0 + length * (length * p2 - p0))
     }
 
-    /// The corrector's right-hand side `−∇E + Σ w (μ − az aλ)/z a`, aλ = −λ(1 + az/z).
-    pub(super) fn corrector(&mut self, mu: f64) {
-        let n = self.data.len();
-        self.rhs.copy_from_slice(&self.descent);
-        for (node, r) in self.nodes.iter().zip(&mut self.rhs) {
-            if node.k < 2 {
-                let second = node.az * node.lambda * (1.0 + node.az / node.z);
-                r[node.k] += node.unit * (node.w * ((mu + second) / node.z));
-            }
-        }
-        for i in 0..n {
-            let Segment { a, b, w, .. } = self.segments[i];
+    /// Add `Σ (μ/z − az aλ/z) g` to the right-hand side −∇E.
+    fn corrector(&mut self, mu: f64) {
+        for i in 0..self.data.len() {
+            let segment = &self.segments[i];
             let mut r = [0.0; 4];
-            for block in &self.blocks[self.first[i] as usize..self.first[i + 1] as usize] {
-                let mut force = [0.0; 4];
-                for j in 0..4 {
-                    let second = block.az[j] * block.lambda[j] * (1.0 + block.az[j] * block.iz[j]);
-                    force[j] = w * block.on[j] * ((mu + second) * block.iz[j]);
-                }
-                let g = &self.table[usize::from(block.part)].by_unknown;
+            for c in &self.conditions[self.range(i)] {
+                let force = mu * c.iz + c.affine * (c.lambda * (1.0 + c.affine));
                 for k in 0..4 {
-                    r[k] += sum(&times(&force, &g[k]));
+                    r[k] += force * c.g[k];
                 }
             }
-            self.rhs[i][0] += a * r[0];
-            self.rhs[i][1] += b * r[1];
-            self.rhs[i + 1][0] += a * r[2];
-            self.rhs[i + 1][1] += b * r[3];
-        }
-        for (node, r) in self.nodes.iter().zip(&mut self.rhs) {
-            if !node.free.0 {
-                r[0] = 0.0;
-            }
-            if !node.free.1 {
-                r[1] = 0.0;
-            }
+            let (l, n) = (self.free[i], self.free[i + 1]);
+            let keep = |free: bool, value: f64| if free { value } else { 0.0 };
+            self.rhs[i][0] += keep(l.0, segment.a * r[0]);
+            self.rhs[i][1] += keep(l.1, segment.b * r[1]);
+            self.rhs[i + 1][0] += keep(n.0, segment.a * r[2]);
+            self.rhs[i + 1][1] += keep(n.1, segment.b * r[3]);
         }
     }
 
-    /// Changes of the multipliers along the corrected direction, how far it may go, and Σ w(z + αdz)(λ + αdλ).
-    pub(super) fn correct(&mut self, step: &[[f64; 2]], mu: f64) -> Look {
+    /// Changes of the multipliers along the corrected direction, the step they and the slacks allow, Σ λz after it.
+    fn correct(&mut self, mu: f64) -> Step {
         let mut shortest = 0.0f64;
-        let mut products = [0.0; 3];
-        for (node, d) in self.nodes.iter_mut().zip(step) {
-            if node.k < 2 {
-                let dz = node.unit * d[node.k];
-                let second = node.az * node.lambda * (1.0 + node.az / node.z);
-                node.dl = (mu + second) / node.z - node.lambda * (1.0 + dz / node.z);
-                shortest = shortest.max(-dz / node.z).max(-node.dl / node.lambda);
-                products[0] += node.w * node.z * node.lambda;
-                products[1] += node.w * (node.z * node.dl + node.lambda * dz);
-                products[2] += node.w * dz * node.dl;
-            }
-        }
-        let mut worst = [0.0f64; 4];
+        let (mut p0, mut p1, mut p2) = (0.0, 0.0, 0.0);
         for i in 0..self.data.len() {
-            let segment = &self.segments[i];
-            let dc = segment.change(step[i], step[i + 1]);
-            let (mut p0, mut p1, mut p2) = ([0.0; 4], [0.0; 4], [0.0; 4]);
-            for block in &mut self.blocks[self.first[i] as usize..self.first[i + 1] as usize] {
-                let dz = values(&self.table[usize::from(block.part)], &dc);
-                for j in 0..4 {
-                    let on = block.on[j];
-                    let (z, iz, lambda, az) =
-                        (block.z[j], block.iz[j], block.lambda[j], block.az[j]);
-                    let dz = dz[j] * on;
-                    let second = az * lambda * (1.0 + az * iz);
-                    let dl = on * ((mu + second) * iz) - lambda * (1.0 + dz * iz);
-                    block.dl[j] = dl;
-                    // A coefficient that is no condition has λ = dλ = 0: keep the quotient defined.
-                    worst[j] = worst[j].max(-dz * iz).max(-dl / (lambda + (1.0 - on)));
-                    p0[j] += z * lambda;
-                    p1[j] += z * dl + lambda * dz;
-                    p2[j] += dz * dl;
-                }
-            }
-            products[0] += segment.w * sum(&p0);
-            products[1] += segment.w * sum(&p1);
-            products[2] += segment.w * sum(&p2);
-        }
-        let shortest = worst.iter().fold(shortest, |a, b| a.max(*b));
-        Look { length: 1.0 / shortest, products }
-    }
-
-    pub(super) fn advance(&mut self, step: &[[f64; 2]], alpha: f64) {
-        for node in &mut self.nodes {
-            node.lambda += alpha * node.dl;
-        }
-        for block in &mut self.blocks {
-            for j in 0..4 {
-                block.lambda[j] += alpha * block.dl[j];
+            let du = self.segments[i].local(self.direction[i], self.direction[i + 1]);
+            let range = self.range(i);
+            for c in &mut self.conditions[range] {
+                let ratio = c.along(&du) * c.iz;
+                let second = c.affine * (c.lambda * (1.0 + c.affine));
+                c.dl = (mu * c.iz + second) - c.lambda * (1.0 + ratio);
+                shortest = larger(larger(shortest, -ratio), -c.dl / c.lambda);
+                let z = 1.0 / c.iz;
+                p0 += z * c.lambda;
+                p1 += z * (c.dl + c.lambda * ratio);
+                p2 += z * (ratio * c.dl);
             }
         }
-        for (v, d) in self.v.iter_mut().zip(step) {
-            *v = [v[0] + alpha * d[0], v[1] + alpha * d[1]];
+        let length = (FRACTION / shortest).min(1.0);
+        Step { length, gap: p0 + length * (p1 + length * p2) }
+    }
+
+    /// Go that far.
+    pub(super) fn advance(&mut self, length: f64) {
+        for c in &mut self.conditions {
+            c.lambda += length * c.dl;
+        }
+        for (v, d) in self.v.iter_mut().zip(&self.direction) {
+            *v = [v[0] + length * d[0], v[1] + length * d[1]];
         }
     }
 }
 
-/// Coefficients 1…4 of a part.
+/// The larger; the first when the second is NaN. One instruction, where `f64::max` has to look for NaN.
 #[inline]
-pub(super) fn values(conditions: &Conditions, c: &[f64; 5]) -> [f64; 4] {
-    let mut z = [0.0; 4];
-    for (k, row) in conditions.by_coefficient.iter().enumerate() {
-        for j in 0..4 {
-            z[j] += c[k] * row[j];
-        }
-    }
-    z
-}
-
-#[inline]
-fn times(a: &[f64; 4], b: &[f64; 4]) -> [f64; 4] {
-    [a[0] * b[0], a[1] * b[1], a[2] * b[2], a[3] * b[3]]
-}
-
-#[inline]
-fn sum(a: &[f64; 4]) -> f64 {
-    (a[0] + a[2]) + (a[1] + a[3])
+fn larger(a: f64, b: f64) -> f64 {
+    if b > a { b } else { a }
 }

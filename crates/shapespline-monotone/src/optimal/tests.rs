@@ -20,35 +20,38 @@ fn random(rng: &mut Lcg, n: usize, decades: f64) -> Data {
     Data::new(&x, &y).unwrap()
 }
 
-/// A hundred random monotone sets against Clarabel on thirty-two parts a segment: within half a per cent, and
-/// not below what the refined conditions allow.
+/// A hundred random monotone sets against Clarabel on sixty-four parts a segment: within half a per cent of
+/// it, and below it by no more than those conditions lose; the certified gap holds.
 #[test]
 fn within_half_a_per_cent_of_the_reference() {
     let mut rng = Lcg(1);
     for (decades, n) in [(0.0, 5), (0.0, 20), (1.0, 5), (1.0, 20), (3.0, 5), (3.0, 12), (0.0, 50)] {
         let (mut worst, mut steps, mut blocks) = (0.0f64, 0, 0);
-        for case in 0..15 {
+        let cases = if n > 20 { 4 } else { 15 };
+        for case in 0..cases {
             let data = random(&mut rng, n, decades);
             let mut problem = Problem::new(&data, Fairness::Bending);
-            let found = problem.run();
+            let found = problem.run(STARTS[0]);
             let d: Vec<f64> = problem.v.iter().map(|v| v[0]).collect();
             let s: Vec<f64> = problem.v.iter().map(|v| v[1]).collect();
             let ours = energy::total(&data, Fairness::Bending, &d, &s);
-            let (d, s, _) = reference::optimal(&data, Fairness::Bending, 5);
+            let (d, s, _) = reference::optimal(&data, Fairness::Bending, 6);
             let ratio = ours / energy::total(&data, Fairness::Bending, &d, &s);
             assert!(found.converged, "decades {decades} n {n} case {case}: {found:?}");
             assert!(
-                (0.9999..1.005).contains(&ratio),
+                (0.999..1.005).contains(&ratio),
                 "decades {decades} n {n} case {case}: {ratio}"
             );
+            // The reference is not below the exact optimum, which is not below our bound.
+            assert!(ratio * (1.0 - found.gap) <= 1.0 + 1e-9, "{ratio} {}", found.gap);
             worst = worst.max(ratio);
             steps += found.steps;
-            blocks += problem.blocks.len();
+            blocks += problem.conditions.len();
         }
         println!(
-            "decades {decades} n {n}: worst {worst:.5}, steps {}, parts {:.1}",
-            steps / 15,
-            blocks as f64 / 15.0 / n as f64
+            "decades {decades} n {n}: worst {worst:.5}, steps {}, conditions {:.1}",
+            steps / cases,
+            blocks as f64 / cases as f64 / n as f64
         );
     }
 }
