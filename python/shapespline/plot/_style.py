@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-__all__ = ["CURVE", "DATA", "OPEN", "WRONG", "axes_for"]
+__all__ = ["CURVE", "DATA", "OPEN", "STYLE", "WRONG", "axes_for"]
 
 # One colour for one thing, in all figures: what is drawn, what the data say, what is wrong, and
 # what stays undecided.
@@ -15,6 +15,21 @@ CURVE = "#1f5fa8"
 DATA = "#8a8f98"
 WRONG = "#c8442f"
 OPEN = "#d99a1e"
+
+#: Matplotlib's settings for the figures that this project draws itself.
+STYLE: dict[Any, Any] = {
+    "font.size": 9,
+    "axes.titlesize": 10,
+    "axes.titleweight": "bold",
+    "axes.titlelocation": "left",
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.edgecolor": "#606770",
+    "axes.labelcolor": "#404650",
+    "xtick.color": "#606770",
+    "ytick.color": "#606770",
+    "legend.frameon": False,
+}
 
 
 def axes_for(ax: Axes | None, *, space: bool = False) -> Axes:
