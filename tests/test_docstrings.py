@@ -72,7 +72,9 @@ def test_public_calls_name_their_arguments(name):
         assert not kinds & {inspect.Parameter.VAR_POSITIONAL, inspect.Parameter.VAR_KEYWORD}
 
 
-@pytest.mark.parametrize("name", [n for n in CALLABLE if "." not in n or n.startswith("plot.")])
+@pytest.mark.parametrize(
+    "name", [n for n in CALLABLE if "." not in n or n.startswith(("plot.", "interchange."))]
+)
 def test_public_classes_and_functions_show_an_example(name):
     assert examples(name) is not None
 

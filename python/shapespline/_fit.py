@@ -7,6 +7,7 @@ the list of those it has.
 from __future__ import annotations
 
 import json
+import re
 import sys
 from dataclasses import dataclass
 from pathlib import Path
@@ -22,6 +23,7 @@ from shapespline import (
     NuSpline,
     Tangents,
     TensionSpline,
+    interchange,
 )
 from shapespline._convert import piecewise
 from shapespline._files import write_curve
@@ -109,7 +111,8 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         default=[],
         metavar="OUT",
         help="OUT.csv or .tsv: a table of samples; OUT.json: the curve itself, which "
-        "`shapespline check` reads; - : samples to standard output. May be given several times",
+        "`shapespline check` reads; OUT.svg (in the plane), OUT.step: the same for other programs; "
+        "-: samples to standard output. May be given several times",
     )
     out.add_argument("--samples", type=int, metavar="N", help="default: 20 a segment")
     out.add_argument(
@@ -278,9 +281,34 @@ def _kind(path: Path) -> str:
         return "stdout"
     if path.suffix.lower() in (".csv", ".tsv", ".txt"):
         return "samples"
-    if path.suffix.lower() == ".json":
+    if path.suffix.lower() in (".json", ".svg", ".step", ".stp"):
         return "curve"
-    raise InputError(f"{path}: the ending must be .csv, .tsv, .txt (samples) or .json (the curve)")
+    raise InputError(
+        f"{path}: the ending must be .csv, .tsv or .txt (samples), or .json, .svg or .step (the "
+        "curve)"
+    )
+
+
+def _write_curve(path: Path, curve: Any, data: Points) -> None:
+    """Write the curve itself, in the form that the ending says."""
+    ending = path.suffix.lower()
+    if ending == ".json":
+        write_curve(path, curve)
+        return
+    try:
+        if ending == ".svg":
+            text = interchange.svg(curve)
+        else:
+            # The unit of the first column, where STEP knows it.
+            unit = re.search(r"[\[(/ ](m|mm|cm|km|µm)[\])]?$", data.names[0])
+            text = interchange.step(
+                curve,
+                name=data.path.stem.encode("ascii", "replace").decode(),
+                unit=unit.group(1) if unit else "mm",
+            )
+    except ValueError as error:
+        raise FileError(path, str(error)) from None
+    _write(path, text)
 
 
 def _plot(fit: _Fit, data: Points, path: Path) -> None:
@@ -321,7 +349,7 @@ def run(options: argparse.Namespace) -> int:
     for path, kind in zip(options.out, kinds, strict=True):
         if kind == "curve":
             with progress(f"writing {path.name}"):
-                write_curve(path, fit.curve)
+                _write_curve(path, fit.curve, data)
             continue
         with progress(f"writing {path.name}"):
             names, columns = _samples(fit, data, options)
