@@ -70,6 +70,7 @@ docs: extension $(VENV)/.docs
 	cp -r "$${CARGO_TARGET_DIR:-target}/doc" site/rust
 	$(BIN)/python scripts/gallery.py
 	$(BIN)/python -m sphinx -W --keep-going -q -b html -c python/docs python site/python
+	@echo "open site/python/docs/index.html (Python) or site/rust/shapespline/index.html (Rust)"
 
 clean:
 	rm -rf $(VENV) target out site python/docs/images/gallery .pytest_cache .mypy_cache .ruff_cache .hypothesis

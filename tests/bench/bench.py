@@ -158,6 +158,17 @@ def overhead() -> Iterator[Line]:
     yield within("one scalar call", call, 2e-6)
 
 
+def importing() -> Iterator[Line]:
+    """Measure what ``import shapespline`` takes after ``import numpy``, in fresh processes."""
+    code = (
+        "import numpy, time; start = time.perf_counter(); import shapespline; "
+        "print(time.perf_counter() - start)"
+    )
+    command = [sys.executable, "-c", code]
+    runs = [subprocess.run(command, capture_output=True, text=True, check=True) for _ in range(7)]
+    yield within("import, after import numpy", min(float(run.stdout) for run in runs), 60e-3)
+
+
 def at_most(what: str, ours: float, theirs: float, most: float) -> Line:
     """Return the line for a cost, relative to another of ours, that must not exceed ``most``."""
     ratio = ours / theirs
@@ -310,6 +321,7 @@ def main() -> int:
         families([n for n in sizes if n >= 10_000], largest),
         collections(),
         overhead(),
+        importing(),
         memory(largest),
     ):
         for line in part:
