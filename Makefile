@@ -1,7 +1,7 @@
 # Every target sets up what it needs; a second run only does what changed.
 #   make demo    shape-preserving curves through real data, printed and drawn to out/demo
 #   make test    the Rust tests, then the Python tests
-#   make check   formatting, lints, stubs, types, documentation, then `make test`: what CI runs
+#   make check   formatting, lints, stubs, types, `make test`, then `make docs`: what CI runs
 #   make bench   speed and memory beside SciPy's, as one table
 #   make docs    the documentation of both languages in site/: pages and notebooks executed, warnings are errors
 #   make clean   forget all of the above
@@ -41,7 +41,7 @@ test-rust: cargo
 test-python: extension
 	$(BIN)/python -m pytest $(PYTEST)
 
-check: lint-rust lint-python test
+check: lint-rust lint-python test docs
 
 # A missing component is an installation matter, not a finding: say so before cargo's own, less helpful, words.
 lint-rust: $(VENV)/.python | cargo

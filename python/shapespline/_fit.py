@@ -55,6 +55,8 @@ METHODS: dict[str, tuple[Any, tuple[str, ...]]] = {
 }
 #: Names of given tension: with one of them there is no search.
 _GIVEN = ("tension", "tangent_scale")
+#: Most samples that are written unasked, but for one a point.
+MOST_SAMPLES = 100_001
 _FIGURES = (".png", ".svg", ".pdf")
 
 
@@ -114,7 +116,9 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         "`shapespline check` reads; OUT.svg (in the plane), OUT.step: the same for other programs; "
         "-: samples to standard output. May be given several times",
     )
-    out.add_argument("--samples", type=int, metavar="N", help="default: 20 a segment")
+    out.add_argument(
+        "--samples", type=int, metavar="N", help="default: 20 a segment, 100,001 at most"
+    )
     out.add_argument(
         "--by",
         choices=["parameter", "arc-length"],
@@ -252,7 +256,8 @@ def _located(data: Points, options: argparse.Namespace, error: Exception) -> Exc
 
 def _samples(fit: _Fit, data: Points, options: argparse.Namespace) -> tuple[list[str], Floats]:
     """Return the names and the columns of the table of samples."""
-    count = options.samples or 20 * (len(data.points) - 1) + 1
+    n = len(data.points)
+    count = options.samples or max(n, min(20 * (n - 1) + 1, MOST_SAMPLES))
     if _is_function(options.method):
         if options.by != "parameter":
             raise InputError("--by arc-length is for curves; a function is sampled by its x")
@@ -333,12 +338,12 @@ def run(options: argparse.Namespace) -> int:
         raise InputError(f"{options.plot}: the ending must be one of {', '.join(_FIGURES)}")
     if options.samples is not None and options.samples < 2:
         raise InputError(f"--samples must be at least 2, got {options.samples}")
-    if _is_function(options.method):
-        data, fitted = read_function(options.points, options.columns), _fit_function
-        if data.points.shape[1] != 2:
-            raise InputError(f"a function has two columns, got {data.points.shape[1]}")
-    else:
-        data, fitted = read_points(options.points, options.columns), _fit_curve
+    function = _is_function(options.method)
+    with progress(f"reading {options.points.name}"):
+        data = (read_function if function else read_points)(options.points, options.columns)
+    fitted = _fit_function if function else _fit_curve
+    if function and data.points.shape[1] != 2:
+        raise InputError(f"a function has two columns, got {data.points.shape[1]}")
     try:
         with progress(f"fitting {len(data.points):,} points"):
             fit = fitted(options.method, data, given)
