@@ -220,7 +220,7 @@ def _draw(data: DataSet, cubic: SpaceCurve, kept: SpaceCurve) -> Figure:
     plot.torsion(cubic, ax=over, color=CUBIC, linestyle="--", data=False, label="C² cubic spline")
     plot.torsion(kept, ax=over, label="shape-preserving ν-spline")
     below = figure.add_subplot(areas[1, 1], sharex=over)
-    plot.curvature(cubic, ax=below, color=CUBIC, linestyle="--")
+    plot.curvature(cubic, ax=below, color=CUBIC, linestyle="--", data=False)
     plot.curvature(kept, ax=below)
     wrong = sorted({v.segment for v in report.violations if first <= v.segment < last})
     for ax in (over, below):
