@@ -153,21 +153,38 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     curve.add_argument(
         "--criteria", type=_names, metavar="NAME,…", help="which criteria to keep and to check"
     )
-    curve.add_argument("--strategy", choices=["fairest", "growth", "reduction", "nussp"])
-    curve.add_argument("--step", type=float, help="first step of the tension")
-    curve.add_argument("--max-iterations", type=int, metavar="N")
-    curve.add_argument("--safety", type=float, help="share of the bounds on the handles in use")
-    curve.add_argument("--continuity", choices=["C1", "G1"])
-    curve.add_argument("--tension", type=float, help="given tension: no search")
-    curve.add_argument("--tangent-scale", type=float, help="given scale of tangents: no search")
-    curve.add_argument("--coplanarity", type=float, metavar="SINE")
-    curve.add_argument("--collinearity", type=float, metavar="SINE")
-    curve.add_argument("--tolerance", type=float, help="what counts as zero")
+    for flag, kind, help_text in (
+        ("--step", float, "step of the tension in strategies nussp, growth and reduction"),
+        ("--max-iterations", int, "rounds after which the search gives up (exit status 1)"),
+        ("--safety", float, "catmull-rom: share of the bounds on its handles that is used"),
+        ("--tension", float, "nu, catmull-rom: given tension, no search"),
+        ("--tangent-scale", float, "tension: given λ in (0, 1], no search"),
+        ("--coplanarity", float, "sine of the largest angle between binormal and plane normal"),
+        ("--collinearity", float, "sine of the largest angle between tangent and line"),
+        ("--tolerance", float, "what counts as zero"),
+    ):
+        curve.add_argument(flag, type=kind, metavar="N" if kind is int else "X", help=help_text)
+    curve.add_argument(
+        "--strategy",
+        choices=["fairest", "growth", "reduction", "nussp"],
+        help="how tension is searched for (default: fairest)",
+    )
+    curve.add_argument(
+        "--continuity", choices=["C1", "G1"], help="catmull-rom: one handle a point, or two"
+    )
 
     function = parser.add_argument_group("functions (quartic, quintic)")
-    function.add_argument("--slopes", choices=["optimal", "fritsch-butland"])
-    function.add_argument("--fairness", choices=["bending", "parametric"])
-    function.add_argument("--shape", type=float, help="first value of α and β")
+    function.add_argument(
+        "--slopes", choices=["optimal", "fritsch-butland"], help="quintic (default: optimal)"
+    )
+    function.add_argument(
+        "--fairness",
+        choices=["bending", "parametric"],
+        help="quintic: the energy that is least (default: bending)",
+    )
+    function.add_argument(
+        "--shape", type=float, metavar="X", help="quartic: first value of α and β (default: 3)"
+    )
 
 
 def _given(options: argparse.Namespace) -> dict[str, Any]:

@@ -62,7 +62,7 @@ def _add_fit(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> N
         help=text,
         description=text.capitalize() + ".",
         epilog="Exit status: 0 when the shape is kept, 1 when it is not, 2 for bad input. Formats "
-        "of the files: python/docs/files.md.",
+        "of the files: the page Files of the documentation.",
     )
     _fit.add_options(parser)
     parser.set_defaults(run=_fit.run)
