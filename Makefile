@@ -1,9 +1,9 @@
 # Every target sets up what it needs; a second run only does what changed.
 #   make demo    shape-preserving curves through real data, printed and drawn to out/demo
 #   make test    the Rust tests, then the Python tests
-#   make check   formatting, lints, stubs, types, documentation, then `make test`: what CI runs
+#   make check   formatting, lints, stubs, types, `make test`, then `make docs`: what CI runs
 #   make bench   speed and memory beside SciPy's, as one table
-#   make docs    reference pages of both languages in site/
+#   make docs    the documentation of both languages in site/: pages and notebooks executed, warnings are errors
 #   make clean   forget all of the above
 
 PYTHON ?= python3
@@ -41,7 +41,7 @@ test-rust: cargo
 test-python: extension
 	$(BIN)/python -m pytest $(PYTEST)
 
-check: lint-rust lint-python test
+check: lint-rust lint-python test docs
 
 # A missing component is an installation matter, not a finding: say so before cargo's own, less helpful, words.
 lint-rust: $(VENV)/.python | cargo
@@ -62,15 +62,18 @@ lint-python: extension
 bench: extension
 	$(BIN)/python tests/bench/bench.py $(BENCH)
 
+# Sphinx with MyST-NB: python/docs/conf.py says why. The gallery's pictures are drawn anew, not kept in the repository.
 docs: extension $(VENV)/.docs
 	RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps
-	mkdir -p site
 	rm -rf site/rust site/python
-	cp -r target/doc site/rust
-	$(BIN)/pdoc --docformat numpy --output-directory site/python shapespline
+	mkdir -p site
+	cp -r "$${CARGO_TARGET_DIR:-target}/doc" site/rust
+	$(BIN)/python scripts/gallery.py
+	$(BIN)/python -m sphinx -W --keep-going -q -b html -c python/docs python site/python
+	@echo "open site/python/docs/index.html (Python) or site/rust/shapespline/index.html (Rust)"
 
 clean:
-	rm -rf $(VENV) target out site .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	rm -rf $(VENV) target out site python/docs/images/gallery .pytest_cache .mypy_cache .ruff_cache .hypothesis
 	rm -f python/shapespline/_core*.so python/shapespline/_core*.pyd
 	find python tests scripts -name __pycache__ -type d -prune -exec rm -rf {} +
 

@@ -17,7 +17,7 @@ from scipy.interpolate import (
 )
 
 import shapespline as ss
-from shapespline._files import read_points
+from shapespline._tables import read_points
 
 DATA = Path(__file__).resolve().parent.parent / "tests" / "data"
 CRITERIA = ("convexity", "inflection", "torsion", "coplanarity", "collinearity")

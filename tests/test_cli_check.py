@@ -12,7 +12,7 @@ from scipy.interpolate import CubicSpline, make_interp_spline
 import cases
 import polygons
 import shapespline as ss
-from shapespline import _files, cli
+from shapespline import _files, _tables, cli
 
 DOCS = Path(__file__).parent.parent / "python" / "docs"
 
@@ -173,13 +173,13 @@ EXPECTED = np.array([[0.0, 0.5], [1.0, 1.25], [2.0, -3e-2]])
 def test_tables(text, tmp_path):
     path = tmp_path / "p.csv"
     path.write_bytes(text.encode())
-    found = _files.read_points(path)
+    found = _tables.read_points(path)
     np.testing.assert_array_equal(found.points, EXPECTED)
     assert found.parameters is None
 
 
 def test_a_table_with_parameters(run, tmp_path):
-    found = _files.read_points(polygons.DATA / "gm_feature_line.csv")
+    found = _tables.read_points(polygons.DATA / "gm_feature_line.csv")
     np.testing.assert_array_equal(found.points, polygons.load_points("gm_feature_line"))
     np.testing.assert_array_equal(found.parameters, polygons.load("gm_feature_line")["u"])
     # A quintic has fewer breaks than points: the column says where they are.
@@ -321,7 +321,7 @@ def test_the_examples_of_the_page_on_files(run, tmp_path, monkeypatch):
     write(tmp_path / "arc.json", blocks["json"])
     write(tmp_path / "arc.csv", "1 0\n0 1\n")
     assert run("check", "arc.csv", "arc.json")[0] == 0
-    found = _files.read_points(write(tmp_path / "p.csv", blocks[""]))
+    found = _tables.read_points(write(tmp_path / "p.csv", blocks[""]))
     assert found.points.shape == (2, 3)
     exec(blocks["python"], {})
     write(tmp_path / "p.csv", "0 0\n1 2\n3 2\n4 0\n")

@@ -28,7 +28,15 @@ def public():
         found[name] = value
         if inspect.isclass(value):
             found |= {f"{name}.{key}": member for key, member in members(value)}
-    return found
+        if inspect.ismodule(value):
+            found |= {f"{name}.{key}": getattr(value, key) for key in value.__all__}
+    # Constants, such as the colours of figures, have no docstring of their own.
+    return {name: value for name, value in found.items() if documents(value)}
+
+
+def documents(value):
+    """Whether an object carries a docstring of its own: strings and numbers do not."""
+    return not isinstance(value, (str, int, float))
 
 
 PUBLIC = public()
@@ -46,6 +54,7 @@ def examples(name):
 def test_the_module_offers_what_it_should():
     assert {"NuSpline", "Tangents", "ShapeReport", "ConvergenceError"} <= set(PUBLIC)
     assert {"NuSpline.shape_preserving", "SpaceCurve.check", "SpaceCurve.frame"} <= set(PUBLIC)
+    assert {"plot.curve", "plot.curvature_comb", "plot.interpolant"} <= set(PUBLIC)
     assert issubclass(ss.NuSpline, ss.SpaceCurve)
     assert ss.__doc__
 
@@ -63,7 +72,9 @@ def test_public_calls_name_their_arguments(name):
         assert not kinds & {inspect.Parameter.VAR_POSITIONAL, inspect.Parameter.VAR_KEYWORD}
 
 
-@pytest.mark.parametrize("name", [n for n in CALLABLE if "." not in n])
+@pytest.mark.parametrize(
+    "name", [n for n in CALLABLE if "." not in n or n.startswith(("plot.", "interchange."))]
+)
 def test_public_classes_and_functions_show_an_example(name):
     assert examples(name) is not None
 

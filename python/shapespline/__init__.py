@@ -9,7 +9,7 @@ True
 (2, 3)
 """
 
-from shapespline import plot
+from shapespline import interchange, plot
 from shapespline._core import (
     CatmullRom,
     Diagnostics,
@@ -67,6 +67,7 @@ __all__ = [
     "fit_many",
     "fit_many_monotone",
     "inflection_count",
+    "interchange",
     "plot",
     "polygon_shape",
 ]

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import sys
 import time
-from contextlib import contextmanager
 from dataclasses import dataclass
 from importlib import resources
 from typing import TYPE_CHECKING, Any
@@ -14,6 +12,8 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from shapespline import CatmullRom, NuSpline, Tangents, TensionSpline, plot
+from shapespline._progress import progress
+from shapespline.plot._style import STYLE
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -27,19 +27,6 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 CUBIC = "#c8442f"
-STYLE: dict[Any, Any] = {
-    "font.size": 9,
-    "axes.titlesize": 10,
-    "axes.titleweight": "bold",
-    "axes.titlelocation": "left",
-    "axes.spines.top": False,
-    "axes.spines.right": False,
-    "axes.edgecolor": "#606770",
-    "axes.labelcolor": "#404650",
-    "xtick.color": "#606770",
-    "ytick.color": "#606770",
-    "legend.frameon": False,
-}
 
 
 @dataclass(frozen=True)
@@ -115,19 +102,6 @@ def data_sets() -> list[DataSet]:
     ]
 
 
-@contextmanager
-def _progress(text: str) -> Iterator[None]:
-    """Say what is going on, where somebody is looking; the line goes when it is done."""
-    shown = sys.stderr.isatty()
-    if shown:
-        print(f"  {text} …", end="", file=sys.stderr, flush=True)
-    try:
-        yield
-    finally:
-        if shown:
-            print(f"\r{' ' * (len(text) + 4)}\r", end="", file=sys.stderr, flush=True)
-
-
 def _table(cubic: ShapeReport, kept: ShapeReport) -> Iterator[str]:
     yield f"  {'violations':<16}{'C² cubic':>10}{'shape-preserving':>18}{'segments asked':>16}"
     after = kept.counts()
@@ -142,7 +116,7 @@ def _fit(data: DataSet) -> tuple[NuSpline, NuSpline]:
     # The type is wider than the names it can hold: these come from the table above.
     ends = {"boundary": data.boundary}
     cubic = NuSpline(data.points, data.parameters, **ends)  # type: ignore[arg-type]
-    with _progress("searching for tension"):
+    with progress("searching for tension"):
         start = time.perf_counter()
         kept = NuSpline.shape_preserving(data.points, data.parameters, **ends)  # type: ignore[arg-type]
         seconds = time.perf_counter() - start
@@ -246,7 +220,7 @@ def _draw(data: DataSet, cubic: SpaceCurve, kept: SpaceCurve) -> Figure:
     plot.torsion(cubic, ax=over, color=CUBIC, linestyle="--", data=False, label="C² cubic spline")
     plot.torsion(kept, ax=over, label="shape-preserving ν-spline")
     below = figure.add_subplot(areas[1, 1], sharex=over)
-    plot.curvature(cubic, ax=below, color=CUBIC, linestyle="--")
+    plot.curvature(cubic, ax=below, color=CUBIC, linestyle="--", data=False)
     plot.curvature(kept, ax=below)
     wrong = sorted({v.segment for v in report.violations if first <= v.segment < last})
     for ax in (over, below):
@@ -296,7 +270,7 @@ def run(out: Path) -> int:
             cubic, kept = _fit(data)
             everything_kept &= kept.check().ok
             path = out / f"{data.file}.png"
-            with _progress("drawing"):
+            with progress("drawing"):
                 _draw(data, cubic, kept).savefig(path, dpi=150)
             print(f"  drawn to {path}")
     print(

@@ -8,20 +8,22 @@ from __future__ import annotations
 
 import argparse
 import json
+import os
 import re
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import shapespline
-from shapespline._files import FileError, read_curve, read_points
+from shapespline import _fit
+from shapespline._files import read_curve
+from shapespline._fit import InputError
+from shapespline._monotone_check import check_monotone
+from shapespline._progress import progress
+from shapespline._tables import FileError, read_function, read_points
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
-
-
-class InputError(Exception):
-    """What the user gave cannot be used; the message is one line."""
 
 
 def _demo(options: argparse.Namespace) -> int:
@@ -53,22 +55,41 @@ def _add_demo(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> 
     parser.set_defaults(run=_demo)
 
 
+def _add_fit(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    text = "fit a curve or a monotone function that keeps the shape of points in a file"
+    parser = commands.add_parser(
+        "fit",
+        help=text,
+        description=text.capitalize() + ".",
+        epilog="Exit status: 0 when the shape is kept, 1 when it is not, 2 for bad input. Formats "
+        "of the files: the page Files of the documentation.",
+    )
+    _fit.add_options(parser)
+    parser.set_defaults(run=_fit.run)
+
+
 def _check(options: argparse.Namespace) -> int:
-    data = read_points(options.points)
     curve = read_curve(options.curve)
+    monotone = options.monotone or curve.shape == "monotone"
+    data = (read_function if monotone else read_points)(options.points)
     # What the curve's own file says comes first.
     parameters = data.parameters if curve.parameters is None else curve.parameters
+    report: Any
     try:
-        report = shapespline.check_shape(
-            data.points,
-            curve.curve,
-            parameters=parameters,
-            boundary=options.boundary or curve.boundary,
-            criteria=options.criteria,
-            coplanarity=options.coplanarity,
-            collinearity=options.collinearity,
-            tolerance=options.tolerance,
-        )
+        with progress(f"checking {len(data.points):,} points"):
+            if monotone:
+                report = check_monotone(data.points, curve.curve, tolerance=options.tolerance)
+            else:
+                report = shapespline.check_shape(
+                    data.points,
+                    curve.curve,
+                    parameters=parameters,
+                    boundary=options.boundary or curve.boundary,
+                    criteria=options.criteria,
+                    coplanarity=options.coplanarity,
+                    collinearity=options.collinearity,
+                    tolerance=options.tolerance,
+                )
     except ValueError as error:
         text = str(error)
         if line := data.locate(text):
@@ -107,6 +128,12 @@ def _add_check(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         metavar="CURVE.json",
         help="Bézier pieces, a B-spline or a piecewise polynomial",
     )
+    parser.add_argument(
+        "--monotone",
+        action="store_true",
+        help="check that a function y(x) rises and falls as its data do (default where CURVE.json "
+        "says so)",
+    )
     names = "convexity, inflection, torsion, coplanarity, collinearity, global-convexity"
     parser.add_argument(
         "--criteria",
@@ -142,6 +169,7 @@ def _parser() -> argparse.ArgumentParser:
     )
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
     _add_demo(commands)
+    _add_fit(commands)
     _add_check(commands)
     return parser
 
@@ -151,12 +179,18 @@ def main(arguments: Sequence[str] | None = None) -> int:
     options = _parser().parse_args(arguments)
     try:
         status: int = options.run(options)
+        sys.stdout.flush()
     except (InputError, FileError) as error:
         print(f"shapespline: {error}", file=sys.stderr)
         return 2
     except KeyboardInterrupt:
         print("shapespline: interrupted", file=sys.stderr)
         return 130
+    except BrokenPipeError:
+        # Whoever read the output has seen enough (`| head`). Python would complain once more when
+        # it closes the pipe.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 141
     return status
 
 

@@ -9,6 +9,7 @@ is no error.
 import argparse
 import gc
 import os
+import platform
 import subprocess
 import sys
 import time
@@ -18,6 +19,7 @@ from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
+import scipy
 from scipy.interpolate import CubicSpline, make_interp_spline
 
 import shapespline as ss
@@ -41,6 +43,12 @@ class Line:
         ratio = "" if self.ratio is None else f"{self.ratio:.2f}"
         met = "yes" if self.met else "NO"
         return f"{self.what:<56}{self.ours:>11}{self.theirs:>11}{ratio:>8}  {self.target:<11}{met}"
+
+    def markdown(self) -> str:
+        """Return the line as a row of a table in Markdown."""
+        ratio = "" if self.ratio is None else f"{self.ratio:.2f}"
+        cells = (self.what, self.ours, self.theirs, ratio, self.target, "yes" if self.met else "no")
+        return "| " + " | ".join(cells) + " |"
 
 
 def seconds(value: float) -> str:
@@ -148,6 +156,17 @@ def overhead() -> Iterator[Line]:
     fit, call = best(lambda: ss.NuSpline(points), lambda: curve(1.5), budget=1.0)
     yield within("one fit of 25 points", fit, 30e-6)
     yield within("one scalar call", call, 2e-6)
+
+
+def importing() -> Iterator[Line]:
+    """Measure what ``import shapespline`` takes after ``import numpy``, in fresh processes."""
+    code = (
+        "import numpy, time; start = time.perf_counter(); import shapespline; "
+        "print(time.perf_counter() - start)"
+    )
+    command = [sys.executable, "-c", code]
+    runs = [subprocess.run(command, capture_output=True, text=True, check=True) for _ in range(7)]
+    yield within("import, after import numpy", min(float(run.stdout) for run in runs), 60e-3)
 
 
 def at_most(what: str, ours: float, theirs: float, most: float) -> Line:
@@ -304,11 +323,44 @@ def counting(count: int) -> Iterator[Line]:
     yield within(f"inflection_count of a spline of {count} points", of_spline, 3.0)
 
 
+#: Threads that others kept busy in the minute before: what the numbers must be read with.
+LOAD = os.getloadavg()[0] if hasattr(os, "getloadavg") else float("nan")
+
+
+def machine() -> str:
+    """Return what the numbers depend on, in a sentence."""
+    cpu = platform.processor() or platform.machine()
+    info = Path("/proc/cpuinfo")
+    if info.exists():
+        models = [line for line in info.read_text("utf-8").splitlines() if "model name" in line]
+        cpu = models[0].partition(":")[2].strip() if models else cpu
+    return (
+        f"Measured on {os.cpu_count()} threads of {cpu}, with Python {platform.python_version()}, "
+        f"NumPy {np.__version__} and SciPy {scipy.__version__}, shapespline {ss.__version__}; "
+        f"before the run, others kept {LOAD:.1f} threads busy."
+    )
+
+
+def page(lines: list[Line]) -> str:
+    """Return the table that python/docs/performance.md includes."""
+    header = "| what | ours | SciPy, or ν | ratio | target | met |\n|---|--:|--:|--:|---|---|\n"
+    rows = "\n".join(line.markdown() for line in lines)
+    met = f"{sum(line.met for line in lines)} of {len(lines)} targets met."
+    return f"{header}{rows}\n\n{met} {machine()}\n"
+
+
 def main() -> int:
     """Print the table line by line as it is measured."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--quick", action="store_true", help="smaller sizes only: under a minute")
-    quick = parser.parse_args().quick
+    parser.add_argument(
+        "--markdown",
+        type=Path,
+        metavar="FILE",
+        help="write the table as Markdown too: python/docs/performance-table.md",
+    )
+    options = parser.parse_args()
+    quick = options.quick
     print(f"{'what':<56}{'ours':>11}{'SciPy':>11}{'ratio':>8}  {'target':<11}met")
     largest = 100_000 if quick else 1_000_000
     sizes = [n for n in (1_000, 10_000, 100_000, 1_000_000) if n <= largest]
@@ -320,6 +372,7 @@ def main() -> int:
         families([n for n in sizes if n >= 10_000], largest),
         collections(),
         overhead(),
+        importing(),
         memory(largest),
         checking(largest),
         counting(2000),
@@ -328,6 +381,8 @@ def main() -> int:
             print(line, flush=True)
             lines.append(line)
     print(f"{sum(line.met for line in lines)} of {len(lines)} targets met")
+    if options.markdown:
+        options.markdown.write_text(page(lines), encoding="utf-8")
     return 0
 
 
