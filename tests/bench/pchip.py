@@ -1,4 +1,4 @@
-"""Time SciPy's PCHIP in the units of `cargo run --example speed -p shapespline-monotone`."""
+"""Time SciPy's PCHIP in the units of shapespline-monotone's example `speed_of_monotone`."""
 
 import time
 from collections.abc import Callable

@@ -15,7 +15,8 @@ use shapespline::monotone::{MonotoneQuartic, MonotoneQuintic, Solver};
 /// active : int
 ///     Conditions that hold with equality; of the quartic: segments whose α, β were scaled down.
 /// kkt_residual : float
-///     Largest violation of the optimality conditions, scaled; interior point: relative duality gap.
+///     Largest violation of the optimality conditions, scaled. Of the interior point: a bound of how
+///     far the energy is above the exact optimum, as a part of it (infinite where none was reached).
 /// converged : bool
 ///     Whether the method ended by its own criterion.
 /// certified : bool
@@ -38,7 +39,7 @@ pub(crate) struct MonotoneDiagnostics {
     iterations: usize,
     /// Conditions that hold with equality.
     active: usize,
-    /// Scaled violation of the optimality conditions, or relative duality gap.
+    /// Scaled violation of the optimality conditions, or bound of the distance from the optimum.
     kkt_residual: f64,
     /// Whether the method ended by its own criterion.
     converged: bool,

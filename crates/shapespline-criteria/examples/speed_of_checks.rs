@@ -1,5 +1,5 @@
 //! What a check costs a segment, best of several, on one core:
-//! `RAYON_NUM_THREADS=1 cargo run --release -p shapespline-criteria --example speed`.
+//! `RAYON_NUM_THREADS=1 cargo run --release -p shapespline-criteria --example speed_of_checks`.
 
 use std::time::Instant;
 

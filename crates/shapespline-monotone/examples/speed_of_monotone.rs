@@ -1,4 +1,4 @@
-//! Build and evaluation times: `cargo run --release -p shapespline-monotone --example speed`.
+//! Build and evaluation times: `cargo run --release -p shapespline-monotone --example speed_of_monotone`.
 //!
 //! The peer, SciPy's `PchipInterpolator`, is timed by `tests/bench/pchip.py` in the same units.
 
