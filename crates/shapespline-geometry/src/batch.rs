@@ -13,6 +13,9 @@ const TILE: usize = 64;
 /// Tiles that one thread works through at least.
 const TILES: usize = 256;
 
+/// Parameters a segment from which the runs of each segment are evaluated together.
+const RUN: usize = 8;
+
 /// `[1 − t, t]` of the parameters of a tile.
 pub(crate) type Locals = [[f64; 2]; TILE];
 
@@ -77,6 +80,19 @@ fn rows<E: Evaluate + ?Sized, const ORDER: usize, const COLUMNS: usize>(
             }
         }
         curve.locals(|j| segments[j], &wrapped[..u.len()], &mut locals);
+        if sorted && u.len() == TILE && segments[0].abs_diff(segments[TILE - 1]) <= TILE / RUN {
+            let mut values = [[0.0; COLUMNS]; TILE];
+            let mut from = 0;
+            while from < TILE {
+                let segment = segments[from];
+                let run = segments[from..].iter().take_while(|&&other| other == segment).count();
+                for (value, &local) in values[from..from + run].iter_mut().zip(&locals[from..]) {
+                    *value = row(segment, local);
+                }
+                from += run;
+            }
+            return values;
+        }
         // The places after the last parameter are on the first segment, and cut off below.
         array::from_fn(|j| row(segments[j], locals[j]))
     };
@@ -121,6 +137,51 @@ impl PiecewiseCubic {
                 return low + knots[low + 1..high].partition_point(|&k| k <= u);
             }
             (low, step) = (high, 2 * step);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    /// However the parameters lie — many or few to a segment, on knots, over several periods, backwards — they
+    /// give what one at a time gives.
+    #[test]
+    fn tiles_give_what_single_parameters_give() {
+        let n = 50;
+        let knots: Vec<f64> = (0..=n).map(|i| f64::from(i) + 0.3 * f64::from(i % 3)).collect();
+        let last = knots[n as usize];
+        let at = |u: f64| DVec3::new(u.cos(), (1.7 * u).sin(), 0.1 * u);
+        let points: Vec<DVec3> = knots.iter().map(|&u| at(u)).collect();
+        let legs: Vec<[DVec3; 2]> = knots.windows(2).map(|k| [at(3.0 * k[0]), at(k[1])]).collect();
+        for domain in [Domain::Open, Domain::Closed] {
+            let mut points = points.clone();
+            if domain == Domain::Closed {
+                points[n as usize] = points[0];
+            }
+            let curve =
+                PiecewiseCubic::new(knots.clone(), points, legs.clone(), Dimension::Three, domain)
+                    .unwrap();
+            for step in [0.01, 0.05, 0.125, 0.25, 1.0, 5.0, 60.0] {
+                let count = ((3.2 * last / step) as usize).max(3 * TILE);
+                let mut u: Vec<f64> = (0..count).map(|k| step * k as f64 - last).collect();
+                u.extend(&knots);
+                u.sort_by(f64::total_cmp);
+                let backwards: Vec<f64> = u.iter().rev().copied().collect();
+                for u in [&u, &backwards] {
+                    for side in [Side::Left, Side::Right] {
+                        for order in 0..4 {
+                            let values = curve.evaluate_many(u, order, side);
+                            for (&u, row) in u.iter().zip(values.chunks(3)) {
+                                let one = curve.evaluate(u, order, side);
+                                assert_eq!(one, DVec3::from_slice(row), "{u} {order} {step}");
+                            }
+                        }
+                    }
+                }
+            }
         }
     }
 }
