@@ -32,11 +32,11 @@ pub(crate) fn bounds(
     if calls.any(signs()) {
         let (a, c, chord) = near_one([a, c], polygon.chord(segment));
         let (x, first, last) = (a.cross(c), a.cross(chord), chord.cross(c));
-        for n in [polygon.binormal(segment), polygon.binormal(segment + 1)] {
+        for n in polygon.binormals(segment) {
             // (αP − qX)·n and (βP' − pX)·n must keep the signs they have at q = p = 0. Where X·n has
             // the other sign, or none, they do.
-            let across = x.dot(n);
-            let (on_q, on_p) = (first.dot(n) / across, last.dot(n) / across);
+            let across = 1.0 / x.dot(n);
+            let (on_q, on_p) = (first.dot(n) * across, last.dot(n) * across);
             if on_q > 0.0 && on_q < q {
                 q = on_q;
             }

@@ -2,13 +2,16 @@
 
 use std::ops::ControlFlow;
 
-use shapespline_criteria::{Checker, Criteria, Tolerances};
+use shapespline_criteria::{Checker, Criteria, ShapeReport, Tolerances};
 use shapespline_geometry::{Boundary, DataPolygon, InputError, PiecewiseCubic};
 use shapespline_search::{
-    Fit, FitError, Interpolant, Outcome, SearchOptions, Tension, per_point, search_and_report,
+    Fit, FitError, Interpolant, Outcome, SearchOptions, Step, Tension, per_point, search_and_report,
 };
 
-use crate::handles::Handles;
+use crate::{
+    handles::Handles,
+    parts::{Checked, limited},
+};
 
 /// What is continuous at the points besides the direction of the tangent.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -83,7 +86,7 @@ impl CatmullRom {
         let valid = |x: f64| (0.0..1.0).contains(&x);
         let tension = tension.nodal(&polygon, "tension", "in [0, 1)", valid)?;
         let factors = tension.iter().map(|t| 1.0 - t).collect();
-        let (legs, _) = Handles::new(&polygon, factors).finish();
+        let (legs, _) = Handles::new(&polygon, factors).into_legs_and_factors();
         Self::assemble(polygon, legs, tension, continuity)
     }
 
@@ -99,24 +102,35 @@ impl CatmullRom {
         polygon: DataPolygon,
         options: &HandleOptions,
     ) -> Result<Fit<Self>, FitError> {
+        Self::shape_preserving_with(polygon, options, &mut |_| ControlFlow::Continue(()))
+    }
+
+    /// As [`CatmullRom::shape_preserving`], with a monitor that sees every step of the tension search
+    /// (which most data do not need) and can end it.
+    ///
+    /// # Errors
+    /// As [`CatmullRom::shape_preserving`].
+    pub fn shape_preserving_with(
+        polygon: DataPolygon,
+        options: &HandleOptions,
+        monitor: &mut dyn FnMut(&Step) -> ControlFlow<()>,
+    ) -> Result<Fit<Self>, FitError> {
         options.validate()?;
-        let HandleOptions { criteria, tolerances, safety, continuity } = *options;
-        let checker = Checker::new(&polygon, criteria, tolerances);
-        let mut handles =
-            Handles::limited(&polygon, checker.calls(), &tolerances, safety, continuity);
-        let faults = checker.all_faults(|i| handles.legs()[i]);
+        let HandleOptions { criteria, tolerances, continuity, .. } = *options;
+        let Checked { mut legs, mut factors, faults, applicable } = limited(&polygon, options);
         let (mut outcome, report) = if faults.is_empty() {
-            (Outcome::solved(), checker.report_of(&faults, |i| handles.legs()[i]))
+            (Outcome::solved(), ShapeReport::clean(legs.len(), criteria, applicable))
         } else {
             // What the closed forms leave: coplanarity, and faults of rounding.
-            handles = handles.under_tension();
+            let checker = Checker::new(&polygon, criteria, tolerances);
+            let mut handles = Handles::under_tension(&polygon, legs, factors);
             let rest =
                 SearchOptions { criteria, tolerances, step: 0.25, ..SearchOptions::default() };
-            let go_on = &mut |_: &_| ControlFlow::Continue(());
-            search_and_report(&mut handles, &checker, &rest, go_on)?
+            let found = search_and_report(&mut handles, &checker, &rest, monitor)?;
+            (legs, factors) = handles.under_their_tension();
+            found
         };
-        drop(checker);
-        let (legs, tension) = handles.finish();
+        let tension: Vec<f64> = factors.into_iter().map(|factor| 1.0 - factor).collect();
         outcome.diagnostics.nodes_changed = tension.iter().filter(|&&t| t > 0.0).count();
         let curve = Self::assemble(polygon, legs, tension, continuity)?;
         Ok(Fit { curve, outcome, report })

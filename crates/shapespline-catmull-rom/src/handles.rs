@@ -3,12 +3,12 @@
 use std::{convert::Infallible, ops::Range};
 
 use rayon::prelude::*;
-use shapespline_criteria::{Calls, Tolerances};
+use shapespline_criteria::Calls;
 use shapespline_geometry::{DVec3, DataPolygon};
 use shapespline_search::{TensionFamily, velocity_weight};
 
 use crate::{
-    Continuity,
+    Continuity, HandleOptions,
     bounds::{bounded, bounds},
     tangents::tangent,
 };
@@ -37,28 +37,38 @@ fn each<T: Send>(count: usize, make: impl Fn(usize) -> T + Sync + Send) -> Vec<T
     }
 }
 
-/// The same of pairs, as two.
-fn each_pair<S: Send, T: Send>(
-    count: usize,
-    make: impl Fn(usize) -> (S, T) + Sync + Send,
-) -> (Vec<S>, Vec<T>) {
-    if count < 2 * BLOCK {
-        return (0..count).map(make).unzip();
+/// The full legs of every segment: a third of the spacing along the tangents at its nodes. A leg at an
+/// end of zero curvature is zero here.
+fn full_legs(polygon: &DataPolygon) -> Vec<[DVec3; 2]> {
+    let tangents = each(polygon.points().len(), |node| tangent(polygon, node).unwrap_or_default());
+    each(polygon.segments(), |i| {
+        let third = polygon.spacing(i) / 3.0;
+        [tangents[i] * third, tangents[i + 1] * third]
+    })
+}
+
+/// Legs times the two factors of their segment.
+fn scaled(
+    mut legs: Vec<[DVec3; 2]>,
+    factors: impl Fn(usize) -> [f64; 2] + Sync + Send,
+) -> Vec<[DVec3; 2]> {
+    let scale = |(i, [a, c]): (usize, &mut [DVec3; 2])| {
+        let [p, q] = factors(i);
+        (*a, *c) = (*a * p, *c * q);
+    };
+    if legs.len() < 2 * BLOCK {
+        legs.iter_mut().enumerate().for_each(scale);
+    } else {
+        legs.par_iter_mut().with_min_len(BLOCK).enumerate().for_each(scale);
     }
-    let mut pair = (Vec::new(), Vec::new());
-    let all = (0..count).into_par_iter().with_min_len(BLOCK).map(make);
-    all.unzip_into_vecs(&mut pair.0, &mut pair.1);
-    pair
+    legs
 }
 
 impl<'a> Handles<'a> {
     /// Handles of given factors, one a distinct node.
     pub(crate) fn new(polygon: &'a DataPolygon, factors: Vec<f64>) -> Self {
-        let full = FullLegs::new(polygon);
-        let legs = each(polygon.segments(), |i| {
-            let [a, c] = full.of(i);
-            [a * factors[i], c * factors[(i + 1) % factors.len()]]
-        });
+        let at = |node: usize| factors[if node < factors.len() { node } else { 0 }];
+        let legs = scaled(full_legs(polygon), |i| [at(i), at(i + 1)]);
         Self { polygon, legs, factors, tension: Vec::new() }.with_free_ends()
     }
 
@@ -67,51 +77,48 @@ impl<'a> Handles<'a> {
     pub(crate) fn limited(
         polygon: &'a DataPolygon,
         calls: &[Calls],
-        tolerances: &Tolerances,
-        safety: f64,
-        continuity: Continuity,
+        options: &HandleOptions,
     ) -> Self {
-        let sine = tolerances.collinearity;
+        let HandleOptions { safety, continuity, .. } = *options;
+        let sine = options.tolerances.collinearity;
         let cotangent = ((1.0 - sine) * (1.0 + sine)).sqrt() / sine;
-        let n = polygon.segments();
-        let full = FullLegs::new(polygon);
+        let (n, closed) = (polygon.segments(), polygon.is_closed());
+        let legs = full_legs(polygon);
         // Factors that each segment allows at its two ends.
         let limits = each(n, |i| {
             if !calls[i].any(bounded()) {
                 return [1.0; 2];
             }
-            let on = bounds(polygon, i, calls[i], full.of(i), cotangent);
+            let on = bounds(polygon, i, calls[i], legs[i], cotangent);
             on.map(|bound| f64::min(1.0, safety * bound))
         });
         // Factors of the legs before and after a node.
-        let joined = |node: usize| {
+        let joined = each(n + 1, |node| {
             let (before, after) = match node {
-                0 if polygon.is_closed() => (n - 1, 0),
-                0 => return [limits[0][0]; 2],
-                _ if node < n => (node - 1, node),
-                _ if polygon.is_closed() => (n - 1, 0),
-                _ => return [limits[n - 1][1]; 2],
+                0 if !closed => return [limits[0][0]; 2],
+                _ if node == n && !closed => return [limits[n - 1][1]; 2],
+                _ if node == 0 || node == n => (n - 1, 0),
+                _ => (node - 1, node),
             };
             let (q, p) = (limits[before][1], limits[after][0]);
             // In an inflecting coplanar segment the legs decide where it inflects: one factor a node.
             let split = || calls[before].and(calls[after]).any(Calls::SPLIT_COPLANARITY);
             let one = continuity == Continuity::C1 || split();
             if one { [q.min(p); 2] } else { [q, p] }
-        };
-        let (legs, mut factors) = each_pair(n, |i| {
-            let ([a, c], [before, after]) = (full.of(i), joined(i));
-            ([a * after, c * joined(i + 1)[0]], before.min(after))
         });
-        if !polygon.is_closed() {
-            factors.push(limits[n - 1][1]);
-        }
+        let factors: Vec<f64> = joined[..polygon.nodes()].iter().map(|[q, p]| q.min(*p)).collect();
+        let legs = scaled(legs, |i| [joined[i][1], joined[i + 1][0]]);
         Self { polygon, legs, factors, tension: Vec::new() }.with_free_ends()
     }
 
-    /// The same, ready for the search.
-    pub(crate) fn under_tension(mut self) -> Self {
-        self.tension = vec![0.0; self.factors.len()];
-        self
+    /// Handles that are known, ready for the search.
+    pub(crate) fn under_tension(
+        polygon: &'a DataPolygon,
+        legs: Vec<[DVec3; 2]>,
+        factors: Vec<f64>,
+    ) -> Self {
+        let tension = vec![0.0; factors.len()];
+        Self { polygon, legs, factors, tension }
     }
 
     /// First and last leg of each segment, before any tension.
@@ -119,15 +126,23 @@ impl<'a> Handles<'a> {
         &self.legs
     }
 
-    /// The legs, and what every distinct node's handles were shortened by, as a part of the full.
-    pub(crate) fn finish(mut self) -> (Vec<[DVec3; 2]>, Vec<f64>) {
-        if !self.tension.is_empty() {
-            self.legs = (0..self.legs.len()).map(|i| self.end_legs(i)).collect();
-        }
-        for i in 0..self.factors.len() {
-            self.factors[i] = 1.0 - self.scale(i);
-        }
+    /// What closed forms shortened the handles at each distinct node by.
+    pub(crate) fn factors(&self) -> &[f64] {
+        &self.factors
+    }
+
+    /// Legs and factors, before any tension.
+    pub(crate) fn into_legs_and_factors(self) -> (Vec<[DVec3; 2]>, Vec<f64>) {
         (self.legs, self.factors)
+    }
+
+    /// The same with the tension in them.
+    pub(crate) fn under_their_tension(mut self) -> (Vec<[DVec3; 2]>, Vec<f64>) {
+        self.legs = (0..self.legs.len()).map(|i| self.end_legs(i)).collect();
+        for i in 0..self.factors.len() {
+            self.factors[i] = self.scale(i);
+        }
+        self.into_legs_and_factors()
     }
 
     /// What the handles at a node are of the full ones.
@@ -160,26 +175,6 @@ impl<'a> Handles<'a> {
             (true, false) => [(chord - c) * (0.5 * self.scale(0)), c],
             _ => [a, (chord - a) * (0.5 * self.scale(last + 1))],
         }
-    }
-}
-
-/// The full legs of every segment: a third of the spacing along the tangents at its nodes.
-struct FullLegs<'a> {
-    polygon: &'a DataPolygon,
-    tangents: Vec<DVec3>,
-}
-
-impl<'a> FullLegs<'a> {
-    fn new(polygon: &'a DataPolygon) -> Self {
-        let at = |node| tangent(polygon, node).unwrap_or_default();
-        Self { polygon, tangents: each(polygon.points().len(), at) }
-    }
-
-    /// First and last leg. A leg at an end of zero curvature is zero here.
-    #[inline]
-    fn of(&self, segment: usize) -> [DVec3; 2] {
-        let third = self.polygon.spacing(segment) / 3.0;
-        [segment, segment + 1].map(|node| self.tangents[node] * third)
     }
 }
 

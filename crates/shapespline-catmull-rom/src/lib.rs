@@ -56,6 +56,7 @@
 mod bounds;
 mod curve;
 mod handles;
+mod parts;
 mod tangents;
 
 pub use curve::{CatmullRom, Continuity, HandleOptions};

@@ -3,7 +3,7 @@
 
 use glam::DVec3;
 use rayon::prelude::*;
-use shapespline_geometry::{Boundary, DataPolygon, length};
+use shapespline_geometry::{Boundary, DataPolygon, Dimension, length};
 
 use crate::{Criteria, Criterion, Tolerances};
 
@@ -57,8 +57,7 @@ impl Calls {
     /// Those of the calls that belong to a set of criteria.
     #[must_use]
     pub fn only(self, criteria: Criteria) -> Self {
-        let wanted = criteria.iter().fold(0, |bits, c| bits | Self::of(c).0);
-        Self(self.0 & wanted)
+        Self(self.0 & Self::of_all(criteria).0)
     }
 
     /// The calls that belong to a criterion.
@@ -83,29 +82,53 @@ impl Calls {
     /// What each segment of a polygon calls for. Cost O(N).
     #[must_use]
     pub fn of_polygon(polygon: &DataPolygon, tolerances: &Tolerances) -> Vec<Self> {
-        let of = |i| of_segment(polygon, i, tolerances);
-        let n = polygon.segments();
-        let mut calls: Vec<Self> = if n < 2 * BLOCK {
+        let planar = Self::is_planar(polygon, tolerances);
+        Self::of_part(polygon, tolerances, planar, Criteria::EVERY)
+    }
+
+    /// Whether no segment has a torsion: in a planar polygon coplanarity is no question (paper 001,
+    /// step 0.0). Cost O(N), and nearly none where the first segments answer.
+    #[must_use]
+    pub fn is_planar(polygon: &DataPolygon, tolerances: &Tolerances) -> bool {
+        let torsion = |i: usize| polygon.gamma(i).abs() > tolerances.zero;
+        polygon.dimension() == Dimension::Two || !(0..polygon.segments()).any(torsion)
+    }
+
+    /// What each segment of a part of a polygon calls for among some criteria, where it is known
+    /// whether the whole polygon [is planar](Self::is_planar).
+    pub(crate) fn of_part(
+        part: &DataPolygon,
+        tolerances: &Tolerances,
+        planar: bool,
+        criteria: Criteria,
+    ) -> Vec<Self> {
+        let mut wanted = Self::of_all(criteria);
+        if planar {
+            wanted.0 &= !Self::of(Criterion::Coplanarity).0;
+        }
+        let of = |i| Self(of_segment(part, i, tolerances).0 & wanted.0);
+        let n = part.segments();
+        if n < 2 * BLOCK {
             (0..n).map(of).collect()
         } else {
             (0..n).into_par_iter().with_min_len(BLOCK).map(of).collect()
-        };
-        // Paper 001, step 0.0: in a planar polygon coplanarity is no question.
-        if !calls.iter().any(|c| c.any(Self::of(Criterion::Torsion))) {
-            let rest = !Self::of(Criterion::Coplanarity).0;
-            calls.iter_mut().for_each(|c| c.0 &= rest);
         }
-        calls
+    }
+
+    fn of_all(criteria: Criteria) -> Self {
+        criteria.iter().fold(Self(0), |calls, criterion| calls.and(Self::of(criterion)))
     }
 }
 
+#[inline]
 fn of_segment(polygon: &DataPolygon, i: usize, tolerances: &Tolerances) -> Calls {
     let zero = tolerances.zero;
-    let [p, q] = [polygon.binormal(i), polygon.binormal(i + 1)];
+    let chords @ [before, own, after] = polygon.directions_around(i);
+    let [p, q] = [before.cross(own), own.cross(after)];
     let sines = [p.length(), q.length()];
     let mut calls = Calls::default();
 
-    let gamma = p.dot(polygon.directions_at(i + 1)[1]);
+    let gamma = p.dot(after);
     if gamma > zero {
         calls = calls.and(Calls::RIGHT_TORSION);
     } else if gamma < -zero {
@@ -113,15 +136,14 @@ fn of_segment(polygon: &DataPolygon, i: usize, tolerances: &Tolerances) -> Calls
     }
 
     if sines[0] > zero && sines[1] > zero {
-        let both = sines[0] * sines[1];
-        let cosine = p.dot(q) / both;
+        let (cosine, small) = (p.dot(q), zero * (sines[0] * sines[1]));
         let flat = gamma.abs() <= zero && plane_is_known(p, q, sines, tolerances);
-        if cosine > zero {
+        if cosine > small {
             calls = calls.and(Calls::CONVEXITY).and(Calls::GLOBAL_CONVEXITY);
             if flat {
                 calls = calls.and(Calls::COPLANARITY);
             }
-        } else if cosine < -zero {
+        } else if cosine < -small {
             calls = calls.and(Calls::INFLECTION);
             if flat {
                 calls = calls.and(Calls::SPLIT_COPLANARITY);
@@ -129,18 +151,16 @@ fn of_segment(polygon: &DataPolygon, i: usize, tolerances: &Tolerances) -> Calls
         }
     }
 
-    let on_line = |node: usize, sine: f64| {
-        // (5.39): with zero curvature the ends have no line of their own.
-        let free = polygon.boundary() == Boundary::ZeroCurvature
-            && (node == 0 || node == polygon.segments());
-        let [before, after] = polygon.directions_at(node);
-        !free && sine <= zero && before.dot(after) > 0.0
-    };
-    if on_line(i, sines[0]) {
-        calls = calls.and(Calls::LINE_AT_START);
-    }
-    if on_line(i + 1, sines[1]) {
-        calls = calls.and(Calls::LINE_AT_END);
+    for (side, call) in [Calls::LINE_AT_START, Calls::LINE_AT_END].into_iter().enumerate() {
+        if sines[side] <= zero && chords[side].dot(chords[side + 1]) > 0.0 {
+            // (5.39): with zero curvature the ends have no line of their own.
+            let node = i + side;
+            let free = polygon.boundary() == Boundary::ZeroCurvature
+                && (node == 0 || node == polygon.segments());
+            if !free {
+                calls = calls.and(call);
+            }
+        }
     }
     calls
 }

@@ -1,5 +1,7 @@
 //! The checker: what a polygon calls for, held against segments.
 
+use std::ops::Range;
+
 use glam::DVec3;
 use rayon::prelude::*;
 use shapespline_geometry::DataPolygon;
@@ -27,8 +29,20 @@ impl<'a> Checker<'a> {
     /// Finds out what each segment of the polygon calls for among `criteria`. Cost O(N).
     #[must_use]
     pub fn new(polygon: &'a DataPolygon, criteria: Criteria, tolerances: Tolerances) -> Self {
-        let mut calls = Calls::of_polygon(polygon, &tolerances);
-        calls.iter_mut().for_each(|c| *c = c.only(criteria));
+        let planar = Calls::is_planar(polygon, &tolerances);
+        Self::of_part(polygon, planar, criteria, tolerances)
+    }
+
+    /// The same of a part of a polygon ([`DataPolygon::part`]), where it is known whether the whole
+    /// [is planar](Calls::is_planar).
+    #[must_use]
+    pub fn of_part(
+        polygon: &'a DataPolygon,
+        planar: bool,
+        criteria: Criteria,
+        tolerances: Tolerances,
+    ) -> Self {
+        let calls = Calls::of_part(polygon, &tolerances, planar, criteria);
         Self { polygon, criteria, tolerances, calls }
     }
 
@@ -143,19 +157,22 @@ impl<'a> Checker<'a> {
 
     /// The report that says how often each criterion applies, and nothing else yet.
     pub(crate) fn blank_report(&self) -> ShapeReport {
-        let mut report = ShapeReport::new(self.calls.len(), self.criteria);
-        for calls in &self.calls {
-            for criterion in Criterion::ALL {
-                report.counts[criterion as usize].applicable +=
-                    usize::from(calls.any(Calls::of(criterion)));
-            }
-        }
-        report
+        let n = self.calls.len();
+        ShapeReport::clean(n, self.criteria, self.applicable(0..n))
+    }
+
+    /// How many of the segments each criterion applies to, in the order of [`Criterion::ALL`].
+    #[must_use]
+    pub fn applicable(&self, segments: Range<usize>) -> [usize; 6] {
+        Criterion::ALL.map(|criterion| {
+            let (calls, of) = (&self.calls[segments.clone()], Calls::of(criterion));
+            calls.iter().filter(|calls| calls.any(of)).count()
+        })
     }
 
     #[inline]
     fn situation(&self, i: usize, legs: [DVec3; 2]) -> Situation {
-        let (p, q) = (self.polygon.binormal(i), self.polygon.binormal(i + 1));
+        let [p, q] = self.polygon.binormals(i);
         Situation::new(legs, self.polygon.chord(i), p, q)
     }
 

@@ -61,9 +61,12 @@ pub struct ShapeReport {
 }
 
 impl ShapeReport {
-    pub(crate) fn new(segments: usize, criteria: Criteria) -> Self {
-        let (counts, violations, undecided) = Default::default();
-        Self { segments, criteria, counts, violations, undecided }
+    /// The report on a curve that violates nothing, given how many segments each criterion applies
+    /// to (in the order of [`Criterion::ALL`]).
+    #[must_use]
+    pub fn clean(segments: usize, criteria: Criteria, applicable: [usize; 6]) -> Self {
+        let counts = applicable.map(|applicable| Count { violated: 0, applicable });
+        Self { segments, criteria, counts, violations: Vec::new(), undecided: Vec::new() }
     }
 
     /// Whether every criterion that applies is satisfied, and none is left open.

@@ -1,6 +1,7 @@
 //! How parameters are chosen from points.
 
 use glam::DVec3;
+use rayon::prelude::*;
 
 use crate::{InputError, vector::length};
 
@@ -71,31 +72,43 @@ pub(crate) fn check_increasing(argument: &'static str, u: &[f64]) -> Result<(), 
     Ok(())
 }
 
-fn accumulate(points: &[DVec3], spacing: impl Fn(f64) -> f64) -> Result<Vec<f64>, InputError> {
-    let mut u = Vec::with_capacity(points.len());
+/// Points from which on their distances are taken on all threads.
+const MANY: usize = 32_768;
+
+fn accumulate(
+    points: &[DVec3],
+    spacing: impl Fn(f64) -> f64 + Sync,
+) -> Result<Vec<f64>, InputError> {
+    let step = |i: usize| match i {
+        0 => 0.0,
+        _ => spacing(length(points[i] - points[i - 1])),
+    };
+    let mut u: Vec<f64> = if points.len() < MANY {
+        (0..points.len()).map(step).collect()
+    } else {
+        (0..points.len()).into_par_iter().with_min_len(MANY / 4).map(step).collect()
+    };
     let mut sum = 0.0;
-    u.push(sum);
-    for (i, pair) in points.windows(2).enumerate() {
-        let next = sum + spacing(length(pair[1] - pair[0]));
-        if !next.is_finite() {
-            return Err(InputError::Overflow { index: i, what: "its parameter", value: next });
-        }
-        if next <= sum {
-            // Equal points, or a chord lost to rounding beside the length so far.
-            if pair[0] == pair[1] {
-                return Err(InputError::RepeatedPoint { index: i + 1, value: pair[1] });
-            }
-            let index = i + 1;
-            let (previous, value) = (sum, next);
-            return Err(InputError::NotIncreasing {
-                argument: "parameters",
-                index,
-                previous,
-                value,
-            });
+    for i in 1..u.len() {
+        let next = sum + u[i];
+        // One comparison for what is nearly never so: NaN, too, is not in between.
+        if !(sum < next && next < f64::INFINITY) {
+            return Err(bad_spacing(points, i, sum, next));
         }
         sum = next;
-        u.push(sum);
+        u[i] = sum;
     }
     Ok(u)
+}
+
+/// What is wrong with the parameter of point `index`, which should be finite and exceed that before.
+fn bad_spacing(points: &[DVec3], index: usize, previous: f64, value: f64) -> InputError {
+    if !value.is_finite() {
+        InputError::Overflow { index: index - 1, what: "its parameter", value }
+    } else if points[index - 1] == points[index] {
+        InputError::RepeatedPoint { index, value: points[index] }
+    } else {
+        // A chord lost to rounding beside the length so far.
+        InputError::NotIncreasing { argument: "parameters", index, previous, value }
+    }
 }

@@ -1,8 +1,12 @@
 //! The data polygon: what the points themselves say about the shape of a curve through them.
 
-use std::sync::OnceLock;
+use std::{
+    ops::{Range, RangeInclusive},
+    sync::OnceLock,
+};
 
 use glam::DVec3;
+use rayon::prelude::*;
 
 use crate::{
     Boundary, InputError, Parametrization,
@@ -37,8 +41,8 @@ impl Dimension {
     }
 }
 
-/// Points from which on they are checked on all threads.
-const MANY: usize = 32_768;
+/// Chords from two blocks of this many on are worked on by all threads.
+const BLOCK: usize = 8192;
 
 /// Points `I_0 … I_N` with parameters and end conditions, checked once, and the discrete shape they
 /// have: unit chords, binormal vectors, the sign of the discrete torsion (paper 001, section 2).
@@ -99,15 +103,8 @@ impl DataPolygon {
         boundary: Boundary,
     ) -> Result<Self, InputError> {
         check_ends(&points, boundary)?;
-        // Two runs over the points that need nothing of each other.
-        let chords = || check_chords(&points);
-        let parameters = || parametrization.parameters(&points);
-        let (longest, parameters) = if points.len() < MANY {
-            (chords(), parameters())
-        } else {
-            rayon::join(chords, parameters)
-        };
-        let (longest, parameters) = (longest?, parameters?);
+        let longest = check_chords(&points)?;
+        let parameters = parametrization.parameters(&points)?;
         check_velocities(&points, &parameters, longest)?;
         let tangents = end_tangents(&points, &parameters, boundary)?;
         let directions = OnceLock::new();
@@ -193,10 +190,13 @@ impl DataPolygon {
     fn directions(&self) -> &[DVec3] {
         self.directions.get_or_init(|| {
             let n = self.segments();
-            let mut all = Vec::with_capacity(n + 2);
-            all.push(DVec3::ZERO);
-            all.extend((0..n).map(|i| normalize(self.chord(i))));
-            all.push(DVec3::ZERO);
+            // The first and the last place are filled in below.
+            let direction = |i: usize| normalize(self.chord(i.clamp(1, n) - 1));
+            let mut all: Vec<DVec3> = if n < 2 * BLOCK {
+                (0..n + 2).map(direction).collect()
+            } else {
+                (0..n + 2).into_par_iter().with_min_len(BLOCK).map(direction).collect()
+            };
             (all[0], all[n + 1]) = match (self.is_closed(), self.tangents) {
                 (true, _) => (all[n], all[1]),
                 (_, Some([start, end])) => (normalize(start), normalize(end)),
@@ -230,6 +230,23 @@ impl DataPolygon {
         directions[node].cross(directions[node + 1])
     }
 
+    /// The binormal vectors at the two nodes of a segment.
+    #[inline]
+    #[must_use]
+    pub fn binormals(&self, segment: usize) -> [DVec3; 2] {
+        let [before, own, after] = self.directions_around(segment);
+        [before.cross(own), own.cross(after)]
+    }
+
+    /// The unit chords of a segment and its neighbours, `l_{i−1}, l_i, l_{i+1}` (with the stand-ins at
+    /// the ends).
+    #[inline]
+    #[must_use]
+    pub fn directions_around(&self, segment: usize) -> [DVec3; 3] {
+        let around = &self.directions()[segment..segment + 3];
+        [around[0], around[1], around[2]]
+    }
+
     /// `det[l_{i−1}, l_i, l_{i+1}]` of a segment: `Γ_i` of the unit chords.
     #[inline]
     #[must_use]
@@ -247,6 +264,20 @@ impl DataPolygon {
             f64::NAN
         } else {
             self.gamma(segment) / sines / crate::length(self.chord(segment))
+        }
+    }
+
+    /// The part of an open polygon between two nodes, as a polygon with the same boundary. Its inner
+    /// ends are no ends of the data: what depends on the boundary there is not what it is in the whole.
+    #[must_use]
+    pub fn part(&self, nodes: RangeInclusive<usize>) -> Self {
+        Self {
+            points: self.points[nodes.clone()].to_vec(),
+            parameters: self.parameters[nodes].to_vec(),
+            directions: OnceLock::new(),
+            boundary: self.boundary,
+            tangents: self.tangents,
+            dimension: self.dimension,
         }
     }
 
@@ -278,17 +309,40 @@ fn check_ends(points: &[DVec3], boundary: Boundary) -> Result<(), InputError> {
 /// Points must be finite, and neighbours differ, by no more than f64 holds. Returns the largest
 /// component of a chord.
 fn check_chords(points: &[DVec3]) -> Result<f64, InputError> {
-    let mut longest = 0.0f64;
-    for (i, pair) in points.windows(2).enumerate() {
-        let chord = pair[1] - pair[0];
-        let size = chord.abs().max_element();
-        // A chord of numbers has two ends of numbers.
-        if !chord.is_finite() || size == 0.0 {
-            return Err(bad_chord(points, i));
+    let largest = |chords: Range<usize>| {
+        let mut longest = 0.0f64;
+        for i in chords {
+            let chord = points[i + 1] - points[i];
+            let size = chord.abs().max_element();
+            // A chord of numbers has two ends of numbers.
+            if !chord.is_finite() || size == 0.0 {
+                return Err(i);
+            }
+            longest = longest.max(size);
         }
-        longest = longest.max(size);
+        Ok(longest)
+    };
+    // Of two that are wrong the first is told of.
+    let both = |a: Result<f64, usize>, b: Result<f64, usize>| match (a, b) {
+        (Ok(a), Ok(b)) => Ok(a.max(b)),
+        (Err(a), Err(b)) => Err(a.min(b)),
+        (Err(i), _) | (_, Err(i)) => Err(i),
+    };
+    in_blocks(points.len() - 1, largest, both).map_err(|i| bad_chord(points, i))
+}
+
+/// `work` on `0..count`: from two blocks on on all threads, their results joined.
+fn in_blocks<T: Send>(
+    count: usize,
+    work: impl Fn(Range<usize>) -> T + Sync,
+    join: impl Fn(T, T) -> T + Sync + Send,
+) -> T {
+    if count < 2 * BLOCK {
+        return work(0..count);
     }
-    Ok(longest)
+    let block = |k: usize| work(k * BLOCK..((k + 1) * BLOCK).min(count));
+    let blocks = (0..count.div_ceil(BLOCK)).into_par_iter();
+    blocks.map(block).reduce_with(join).unwrap_or_else(|| work(0..count))
 }
 
 /// What is wrong with chord `i`, the first that is not a positive number.
@@ -308,7 +362,9 @@ fn bad_chord(points: &[DVec3], i: usize) -> InputError {
 
 /// A chord over its spacing is the size of a tangent: if that overflows, so would every answer.
 fn check_velocities(points: &[DVec3], parameters: &[f64], longest: f64) -> Result<(), InputError> {
-    let shortest = parameters.windows(2).map(|u| u[1] - u[0]).fold(f64::INFINITY, f64::min);
+    let spacing = |i: usize| parameters[i + 1] - parameters[i];
+    let least = |chords: Range<usize>| chords.map(spacing).fold(f64::INFINITY, f64::min);
+    let shortest = in_blocks(points.len() - 1, least, f64::min);
     if (longest * 6.0 / shortest).is_finite() {
         return Ok(());
     }

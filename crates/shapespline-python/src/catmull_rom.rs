@@ -178,9 +178,16 @@ impl CatmullRom {
         let (criteria, tolerances) =
             (criteria.0, tolerances(coplanarity, collinearity, tolerance)?);
         let options = HandleOptions { criteria, tolerances, safety, continuity };
-        preserve(class.py(), data, &Failure { criteria, tolerances }, |polygon, _| {
-            catmull_rom::CatmullRom::shape_preserving(polygon, &options)
-        })
+        preserve(
+            class.py(),
+            data,
+            &Failure::of_handles(criteria, tolerances),
+            |polygon, monitor| {
+                catmull_rom::CatmullRom::shape_preserving_with(polygon, &options, &mut |_| {
+                    monitor()
+                })
+            },
+        )
     }
 
     /// What is continuous at the points besides the direction: ``"C1"`` or ``"G1"``.

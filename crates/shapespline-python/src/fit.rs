@@ -87,11 +87,22 @@ pub(crate) fn preserve<C: Member>(
 pub(crate) struct Failure {
     pub(crate) criteria: Criteria,
     pub(crate) tolerances: Tolerances,
+    /// What the caller can do.
+    advice: &'static str,
 }
 
 impl From<&SearchOptions> for Failure {
     fn from(options: &SearchOptions) -> Self {
-        Self { criteria: options.criteria, tolerances: options.tolerances }
+        let SearchOptions { criteria, tolerances, .. } = *options;
+        Self { criteria, tolerances, advice: "raise max_iterations" }
+    }
+}
+
+impl Failure {
+    /// Of Catmull–Rom handles, whose search has no limit that the caller sets.
+    pub(crate) fn of_handles(criteria: Criteria, tolerances: Tolerances) -> Self {
+        let advice = "widen coplanarity or collinearity, or leave out a criterion";
+        Self { criteria, tolerances, advice }
     }
 }
 
@@ -117,9 +128,10 @@ pub(crate) fn finish<C: Member>(
         .collect();
     let message = format!(
         "{whose}the shape is not preserved after {iterations} iterations: of {} segments, {} violate it; \
-         raise max_iterations (this exception carries the last curve and its report)",
+         {} (this exception carries the last curve and its report)",
         report.segments,
         violations.join(", "),
+        failure.advice,
     );
     let curve: Arc<dyn Curve> = Arc::clone(&base.curve);
     let report = curve.with_locations(report);

@@ -118,7 +118,10 @@ pub(crate) fn _fit_many<'py>(
         tolerance,
     )?;
     let (criteria, tolerances) = (search.criteria, search.tolerances);
-    let failure = Failure { criteria, tolerances };
+    let failure = match method {
+        Method::CatmullRom => Failure::of_handles(criteria, tolerances),
+        Method::Nu | Method::Tension => Failure::from(&search),
+    };
     match method {
         Method::Nu => run(py, &data, &offsets, threads, &failure, |polygon, ask| {
             if !shape_preserving {
@@ -135,13 +138,13 @@ pub(crate) fn _fit_many<'py>(
             tension::TensionSpline::shape_preserving_with(polygon, &search, &mut |_| ask())
                 .map(|fit| Made::Searched(Box::new(fit)))
         }),
-        Method::CatmullRom => run(py, &data, &offsets, threads, &failure, |polygon, _| {
+        Method::CatmullRom => run(py, &data, &offsets, threads, &failure, |polygon, ask| {
             if !shape_preserving {
                 let tension = Tension::Uniform(tension);
                 return catmull_rom::CatmullRom::new(polygon, tension, continuity).map(Made::Built);
             }
             let options = HandleOptions { criteria, tolerances, safety, continuity };
-            catmull_rom::CatmullRom::shape_preserving(polygon, &options)
+            catmull_rom::CatmullRom::shape_preserving_with(polygon, &options, &mut |_| ask())
                 .map(|fit| Made::Searched(Box::new(fit)))
         }),
     }
