@@ -38,8 +38,10 @@ const MAX_STEPS: usize = 40;
 const ENOUGH: f64 = 3.5e-3;
 /// The same from which the result counts as found.
 const PROMISE: f64 = 5e-3;
+/// Step lengths (dual and primal together) from which on the iteration does not move any more.
+const STUCK: f64 = 1e-3;
 /// The multipliers' mass on every segment at the start, in units of the largest energy weight.
-const MASS: f64 = 1.0;
+const MASS: f64 = 0.7;
 
 /// Slopes, second derivatives and how they were found; scaled units.
 #[derive(Debug, Clone, Default)]
@@ -145,25 +147,23 @@ fn run(problem: &mut Problem, data: &Data, fairness: Fairness) -> Optimum {
     for i in 0..=data.len() {
         problem.inside[i] = interior(data, i);
     }
-    problem.start(std::env::var("MASS").ok().and_then(|v|v.parse::<f64>().ok()).unwrap_or(MASS));
+    problem.start(MASS);
     let mut found = Optimum { gap: f64::INFINITY, ..Optimum::default() };
-    let mut steps = 1;
+    let (mut steps, mut energy) = (1, f64::INFINITY);
     while steps < MAX_STEPS {
         steps += 1;
         let length = problem.step();
-        let stuck = !(length[0] + length[1] > 1e-3);
-        if std::env::var("DBG").is_ok() { println!("{steps} {length:?} {:e} {}", problem.gap,problem.energy()); }
-        if stuck || problem.gap <= ENOUGH * problem.energy() {
-            if problem.feasible(data) {
-            let (energy, distance) = problem.certificate();
-            let gap = distance / energy;
-            if gap < found.gap {
-                found = result(&problem.best, data);
-                found.gap = gap;
-            }
-        if std::env::var("DBG").is_ok() { println!("    {energy:e} {distance:e}"); }
-            } else {
-        if std::env::var("DBG").is_ok() { println!("    infeasible"); }
+        let stuck = !(length[0] + length[1] > STUCK);
+        // Once feasible the primal energy hardly grows: the last one known tells whether this one is worth finding.
+        let mut close = problem.gap <= ENOUGH * energy;
+        if close {
+            energy = problem.energy();
+            close = problem.gap <= ENOUGH * energy;
+        }
+        if (close || stuck) && problem.feasible(data) {
+            let (upper, distance) = problem.certificate();
+            if distance < found.gap * upper {
+                found = Optimum { gap: distance / upper, ..result(&problem.best, data) };
             }
         }
         if stuck || found.gap <= ENOUGH {

@@ -78,30 +78,32 @@ pub(super) struct Factors {
     pivot: Lane,
     /// R⁻¹, upper triangle row by row.
     ri: [Lane; 10],
-    /// What the moments' change aims at: the right-hand side less the unknowns' part; its middle moment.
+    /// The segment's part of the nodes' matrix, likewise.
+    pub(super) block: [Lane; 10],
+}
+
+/// What a direction aims at.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Aim {
+    /// The moments' right-hand side less the unknowns' part; that of the middle moment.
     t: [Lane; 4],
     middle: Lane,
     /// Mehrotra's term.
     second: [Lane; 9],
-    /// The segment's part of the nodes' system: upper triangle row by row, right-hand side.
-    pub(super) block: [Lane; 10],
+    /// The segment's part of the nodes' right-hand side.
     pub(super) rhs: [Lane; 4],
 }
 
 const ZERO: Lane = [0.0; W];
 
 impl Factors {
-    pub(super) const EMPTY: Self = Self {
-        zi: [ZERO; 9],
-        column: [ZERO; 4],
-        pivot: ZERO,
-        ri: [ZERO; 10],
-        t: [ZERO; 4],
-        middle: ZERO,
-        second: [ZERO; 9],
-        block: [ZERO; 10],
-        rhs: [ZERO; 4],
-    };
+    pub(super) const EMPTY: Self =
+        Self { zi: [ZERO; 9], column: [ZERO; 4], pivot: ZERO, ri: [ZERO; 10], block: [ZERO; 10] };
+}
+
+impl Aim {
+    pub(super) const EMPTY: Self =
+        Self { t: [ZERO; 4], middle: ZERO, second: [ZERO; 9], rhs: [ZERO; 4] };
 }
 
 /// [`ENERGY`]·(1, 0, 1, 0), its first two entries.
@@ -274,7 +276,7 @@ fn product(z: &[f64; 9], x: &[f64; 9]) -> [f64; 15] {
 
 /// The factors of a chunk, its part of the nodes' system, and the predictor's right-hand side (towards μ = 0).
 #[inline(never)]
-pub(super) fn factorise(given: &Given, state: &State, out: &mut Factors) {
+pub(super) fn factorise(given: &Given, state: &State, out: &mut Factors, aim: &mut Aim) {
     for l in 0..W {
         let (y, x) = (get(&state.y, l), get(&state.x, l));
         let zi = inverse(&y);
@@ -323,10 +325,10 @@ pub(super) fn factorise(given: &Given, state: &State, out: &mut Factors) {
         put(&mut out.column, l, c);
         out.pivot[l] = pivot;
         put(&mut out.ri, l, r);
-        put(&mut out.t, l, t);
-        out.middle[l] = -MEAN * pivot;
         put(&mut out.block, l, block);
-        put(&mut out.rhs, l, load(given, l, &y, times4(&r, t)));
+        put(&mut aim.t, l, t);
+        aim.middle[l] = -MEAN * pivot;
+        put(&mut aim.rhs, l, load(given, l, &y, times4(&r, t)));
     }
 }
 
@@ -341,49 +343,57 @@ fn load(given: &Given, l: usize, y: &[f64; 5], dn: [f64; 4]) -> [f64; 4] {
 
 /// The moments' change from the new unknowns.
 #[inline(always)]
-fn moments(f: &Factors, l: usize, u: [f64; 4]) -> [f64; 5] {
-    let (t, p) = (get(&f.t, l), outer(u));
+fn moments(f: &Factors, aim: &Aim, l: usize, u: [f64; 4]) -> [f64; 5] {
+    let (t, p) = (get(&aim.t, l), outer(u));
     let n = times4(&get(&f.ri, l), std::array::from_fn(|k| t[k] - p[k]));
     let c = get(&f.column, l);
-    let m = f.middle[l] - ((c[0] * n[0] + c[3] * n[3]) + (c[1] * n[1] + c[2] * n[2]));
+    let m = aim.middle[l] - ((c[0] * n[0] + c[3] * n[3]) + (c[1] * n[1] + c[2] * n[2]));
     [n[0] + OUTER * m, n[1] + INNER * m, m, n[2] + INNER * m, n[3] + OUTER * m]
 }
 
-/// Mehrotra's term of the predictor that ends at `u`, and the corrector's right-hand side towards μ.
+/// Mehrotra's term of the predictor that ends at `u`, and the corrector's aim towards μ.
 #[inline(never)]
-pub(super) fn correct(given: &Given, state: &State, u: &[Lane; 4], mu: f64, f: &mut Factors) {
-    let from = *f;
+pub(super) fn correct(
+    given: &Given,
+    state: &State,
+    f: &Factors,
+    (predictor, u): (&Aim, &[Lane; 4]),
+    mu: f64,
+    out: &mut Aim,
+) {
     for l in 0..W {
-        let dy = moments(&from, l, get(u, l));
-        let (x, zi) = (get(&state.x, l), get(&from.zi, l));
+        let dy = moments(f, predictor, l, get(u, l));
+        let (x, zi) = (get(&state.x, l), get(&f.zi, l));
         let g = ratio(&dy, &zi);
         let s = symmetric(&x, &g);
         let second = symmetric(&std::array::from_fn(|k| -(x[k] + s[k])), &g);
-        let aim = sums(&std::array::from_fn(|k| mu * zi[k] - second[k]));
-        let c = get(&from.column, l);
-        let rest = (OUTER * (aim[0] + aim[4]) + (INNER * (aim[1] + aim[3]) + aim[2])) - MEAN;
-        let t = [
-            aim[0] - c[0] * rest,
-            aim[1] - c[1] * rest,
-            aim[3] - c[2] * rest,
-            aim[4] - c[3] * rest,
-        ];
-        let dn = times4(&get(&from.ri, l), t);
-        put(&mut f.second, l, second);
-        put(&mut f.t, l, t);
-        f.middle[l] = rest * from.pivot[l];
-        put(&mut f.rhs, l, load(given, l, &get(&state.y, l), dn));
+        let p = sums(&std::array::from_fn(|k| mu * zi[k] - second[k]));
+        let c = get(&f.column, l);
+        let rest = (OUTER * (p[0] + p[4]) + (INNER * (p[1] + p[3]) + p[2])) - MEAN;
+        let t =
+            [p[0] - c[0] * rest, p[1] - c[1] * rest, p[3] - c[2] * rest, p[4] - c[3] * rest];
+        let dn = times4(&get(&f.ri, l), t);
+        put(&mut out.second, l, second);
+        put(&mut out.t, l, t);
+        out.middle[l] = rest * f.pivot[l];
+        put(&mut out.rhs, l, load(given, l, &get(&state.y, l), dn));
     }
 }
 
 /// The change of moments and matrices for the corrected direction that ends at `u`.
 #[inline(never)]
-pub(super) fn change(state: &State, f: &Factors, u: &[Lane; 4], mu: f64, out: &mut State) {
+pub(super) fn change(
+    state: &State,
+    f: &Factors,
+    (aim, u): (&Aim, &[Lane; 4]),
+    mu: f64,
+    out: &mut State,
+) {
     for l in 0..W {
-        let dy = moments(f, l, get(u, l));
+        let dy = moments(f, aim, l, get(u, l));
         let (x, zi) = (get(&state.x, l), get(&f.zi, l));
         let s = symmetric(&x, &ratio(&dy, &zi));
-        let second = get(&f.second, l);
+        let second = get(&aim.second, l);
         put(&mut out.y, l, dy);
         put(&mut out.x, l, std::array::from_fn(|k| (mu * zi[k] - x[k]) - (s[k] + second[k])));
     }
@@ -435,10 +445,11 @@ fn within(state: &State, change: &State, most: [f64; 2], out: &mut [Lane; 2]) {
 }
 
 /// By bisection, from below.
+#[inline(never)]
 fn longest(from: &[f64; 9], by: &[f64; 9], most: f64) -> f64 {
     let at = |s: f64| definite(&std::array::from_fn(|k| from[k] + s * by[k])) > 0.0;
     let (mut lo, mut hi) = (0.0, most);
-    for _ in 0..12 {
+    for _ in 0..8 {
         let middle = 0.5 * (lo + hi);
         if at(middle) {
             lo = middle;

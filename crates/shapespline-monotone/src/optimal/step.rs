@@ -1,6 +1,6 @@
 //! The iteration's working memory and one step of it.
 
-use super::cone::{self, Factors, Given, Lane, State, W};
+use super::cone::{self, Aim, Factors, Given, Lane, State, W};
 use crate::data::Data;
 use crate::energy::{self, Fairness, HESSIAN, is_flat};
 use shapespline_banded::block_tridiagonal::BlockElimination;
@@ -8,7 +8,7 @@ use shapespline_banded::block_tridiagonal::BlockElimination;
 /// Share of the way to the boundary that a step may go.
 const FRACTION: f64 = 0.98;
 /// What a step aims at, in units of the current barrier parameter.
-const AIM: f64 = 0.1;
+const AIM: f64 = 0.08;
 /// Shares of the way to the strictly feasible point that are tried when the primal point is not feasible.
 const SHARES: [f64; 8] = [0.0, 1e-12, 1e-9, 1e-6, 1e-4, 1e-3, 5e-3, 2e-2];
 /// Energy weights below this share of the largest count as this: no unknown may lose its energy altogether.
@@ -22,6 +22,8 @@ pub(super) struct Problem {
     pub(super) given: Vec<Given>,
     pub(super) states: Vec<State>,
     factors: Vec<Factors>,
+    /// The predictor's aims and the corrector's.
+    aims: [Vec<Aim>; 2],
     changes: Vec<State>,
     /// What is free at the nodes, and whether everything is.
     free: Vec<(bool, bool)>,
@@ -32,8 +34,6 @@ pub(super) struct Problem {
     pub(super) inside: Vec<[f64; 2]>,
     w: Vec<[f64; 2]>,
     pub(super) best: Vec<[f64; 2]>,
-    /// What is left of the primal residual: at 0 the primal point is feasible.
-    residual: f64,
     /// tr XZ of all, and of the segments that count.
     sum: f64,
     pub(super) gap: f64,
@@ -89,24 +89,10 @@ impl Problem {
         }
     }
 
-    /// The unknowns of a chunk's segments without dimension.
-    #[inline]
-    pub(super) fn local(given: &Given, v: &[[f64; 2]], j: usize) -> [Lane; 4] {
-        let mut u = [[0.0; W]; 4];
-        let v: &[[f64; 2]] = &v[j * W..=j * W + W];
-        for l in 0..W {
-            let (a, b, idle) = (given.a[l], given.b[l], given.idle[l]);
-            u[0][l] = a * v[l][0] + idle;
-            u[1][l] = b * v[l][1];
-            u[2][l] = a * v[l + 1][0] + idle;
-            u[3][l] = b * v[l + 1][1];
-        }
-        u
-    }
-
     /// The energy's own minimiser to `v`, its elimination kept.
     pub(super) fn unconstrained(&mut self) {
         let mut system = std::mem::take(&mut self.natural);
+        let free = (!self.all_free).then_some(&self.free[..]);
         system.clear();
         let mut diagonal = [0.0; 3];
         let mut rhs = [0.0; 2];
@@ -128,7 +114,7 @@ impl Problem {
                     [a * load(2), b * load(3)],
                 );
             }
-            let (d, c, r) = self.pinned(i, diagonal, next.1, rhs);
+            let (d, c, r) = pinned(pins(free, i), diagonal, next.1, rhs);
             system.push(d, c, r);
             (diagonal, rhs) = (next.0, next.2);
         }
@@ -136,82 +122,53 @@ impl Problem {
         self.natural = system;
     }
 
-    /// A row of the system with the fixed unknowns' rows made the identity, their right-hand sides 0.
-    #[inline]
-    fn pinned(
-        &self,
-        i: usize,
-        mut d: [f64; 3],
-        mut c: [f64; 4],
-        mut r: [f64; 2],
-    ) -> ([f64; 3], [f64; 4], [f64; 2]) {
-        if self.all_free {
-            return (d, c, r);
-        }
-        let (own, next) = (self.free[i], self.free.get(i + 1).copied().unwrap_or_default());
-        if !own.0 {
-            (d[0], d[1], r[0]) = (1.0, 0.0, 0.0);
-            (c[0], c[1]) = (0.0, 0.0);
-        }
-        if !own.1 {
-            (d[2], d[1], r[1]) = (1.0, 0.0, 0.0);
-            (c[2], c[3]) = (0.0, 0.0);
-        }
-        if !next.0 {
-            (c[0], c[2]) = (0.0, 0.0);
-        }
-        if !next.1 {
-            (c[1], c[3]) = (0.0, 0.0);
-        }
-        (d, c, r)
-    }
-
     /// Start in the centre of the cones, the primal point at `inside`.
     pub(super) fn start(&mut self, mass: f64) {
         self.states.clear();
         self.states.extend(self.given.iter().map(|given| cone::start(given, mass)));
         self.factors.resize(self.given.len(), Factors::EMPTY);
+        for aims in &mut self.aims {
+            aims.resize(self.given.len(), Aim::EMPTY);
+        }
         self.changes.resize(self.given.len(), self.states[0]);
         self.w.copy_from_slice(&self.inside);
-        self.residual = 1.0;
         self.sum = self.given.len() as f64 * W as f64 * mass;
     }
 
     /// One step of predictor and corrector. The dual and the primal step's lengths.
     pub(super) fn step(&mut self) -> [f64; 2] {
         let n = self.n;
+        let [predictor, corrector] = &mut self.aims;
+        let free = (!self.all_free).then_some(&self.free[..]);
         for (j, given) in self.given.iter().enumerate() {
-            cone::factorise(given, &self.states[j], &mut self.factors[j]);
+            cone::factorise(given, &self.states[j], &mut self.factors[j], &mut predictor[j]);
         }
-        let mu = std::env::var("AIM").ok().and_then(|v|v.parse::<f64>().ok()).unwrap_or(AIM) * self.sum / (5 * W * self.given.len()) as f64;
+        let mu = AIM * self.sum / (5 * W * self.given.len()) as f64;
         let mut system = std::mem::take(&mut self.system);
         system.clear();
         let mut diagonal = [0.0; 3];
         let mut rhs = [0.0; 2];
-        for i in 0..=n {
-            let mut next = ([0.0; 3], [0.0; 4], [0.0; 2]);
-            if i < n {
-                let (f, l) = (&self.factors[i / W], i % W);
-                let k = &f.block;
-                diagonal = [diagonal[0] + k[0][l], diagonal[1] + k[1][l], diagonal[2] + k[4][l]];
-                rhs = [rhs[0] + f.rhs[0][l], rhs[1] + f.rhs[1][l]];
-                next = (
-                    [k[7][l], k[8][l], k[9][l]],
-                    [k[2][l], k[3][l], k[5][l], k[6][l]],
-                    [f.rhs[2][l], f.rhs[3][l]],
-                );
+        for (j, (f, aim)) in self.factors.iter().zip(&*predictor).enumerate() {
+            let (k, r) = (&f.block, &aim.rhs);
+            for l in 0..W.min(n - j * W) {
+                let d = [diagonal[0] + k[0][l], diagonal[1] + k[1][l], diagonal[2] + k[4][l]];
+                let c = [k[2][l], k[3][l], k[5][l], k[6][l]];
+                let right = [rhs[0] + r[0][l], rhs[1] + r[1][l]];
+                let (d, c, right) = pinned(pins(free, j * W + l), d, c, right);
+                system.push(d, c, right);
+                diagonal = [k[7][l], k[8][l], k[9][l]];
+                rhs = [r[2][l], r[3][l]];
             }
-            let (d, c, r) = self.pinned(i, diagonal, next.1, rhs);
-            system.push(d, c, r);
-            (diagonal, rhs) = (next.0, next.2);
         }
+        let (d, c, right) = pinned(pins(free, n), diagonal, [0.0; 4], rhs);
+        system.push(d, c, right);
         self.ahead[..=n].copy_from_slice(system.solve());
         self.rhs.fill([0.0; 2]);
         for (j, given) in self.given.iter().enumerate() {
-            let u = Self::local(given, &self.ahead, j);
-            let f = &mut self.factors[j];
-            cone::correct(given, &self.states[j], &u, mu, f);
-            gather(&mut self.rhs, j, &f.rhs);
+            let ahead = (&predictor[j], &local(given, &self.ahead, j));
+            let aim = &mut corrector[j];
+            cone::correct(given, &self.states[j], &self.factors[j], ahead, mu, aim);
+            gather(&mut self.rhs, j, &aim.rhs);
         }
         self.mask();
         self.ahead[..=n].copy_from_slice(system.solve_again(|i| self.rhs[i]));
@@ -219,12 +176,12 @@ impl Problem {
         // No longer than Newton's step, and a little short of the boundary.
         let mut most = [1.0 / FRACTION; 2];
         for (j, given) in self.given.iter().enumerate() {
-            let u = Self::local(given, &self.ahead, j);
-            cone::change(&self.states[j], &self.factors[j], &u, mu, &mut self.changes[j]);
+            let ahead = (&self.aims[1][j], &local(given, &self.ahead, j));
+            cone::change(&self.states[j], &self.factors[j], ahead, mu, &mut self.changes[j]);
             most = cone::room(&self.states[j], &self.changes[j], most);
         }
         // A primal step that may go all the way does, and is feasible from then on.
-        let step = most.map(|m| if m >= 1.0 { 1.0f64.min(m) } else { FRACTION * m });
+        let step = most.map(|m| if m >= 1.0 { 1.0 } else { FRACTION * m });
         (self.sum, self.gap) = (0.0, 0.0);
         for ((state, change), given) in self.states.iter_mut().zip(&self.changes).zip(&self.given) {
             cone::advance(state, change, step);
@@ -235,7 +192,6 @@ impl Problem {
                 self.gap += (1.0 - given.idle[l]) * gap[l];
             }
         }
-        self.residual *= 1.0 - step[1];
         for (w, ahead) in self.w.iter_mut().zip(&self.ahead) {
             *w = [w[0] + step[1] * (ahead[0] - w[0]), w[1] + step[1] * (ahead[1] - w[1])];
         }
@@ -255,7 +211,7 @@ impl Problem {
     pub(super) fn energy(&self) -> f64 {
         let mut sum = 0.0;
         for (j, given) in self.given.iter().enumerate() {
-            let w = Self::local(given, &self.w, j);
+            let w = local(given, &self.w, j);
             sum += cone::distance(given, &self.states[j], &w, &w).0.iter().sum::<f64>();
         }
         sum
@@ -288,7 +244,7 @@ impl Problem {
         self.v[..=self.n].copy_from_slice(self.natural.solve_again(|i| self.rhs[i]));
         let (mut energy, mut gap) = (0.0, 0.0);
         for (j, given) in self.given.iter().enumerate() {
-            let (v, w) = (Self::local(given, &self.v, j), Self::local(given, &self.best, j));
+            let (v, w) = (local(given, &self.v, j), local(given, &self.best, j));
             let (e, g) = cone::distance(given, &self.states[j], &v, &w);
             energy += e.iter().sum::<f64>();
             gap += g.iter().sum::<f64>();
@@ -305,4 +261,51 @@ fn gather(rhs: &mut [[f64; 2]], j: usize, r: &[Lane; 4]) {
         rhs[i] = [rhs[i][0] + r[0][l], rhs[i][1] + r[1][l]];
         rhs[i + 1] = [r[2][l], r[3][l]];
     }
+}
+
+/// The unknowns of a chunk's segments without dimension.
+#[inline]
+fn local(given: &Given, v: &[[f64; 2]], j: usize) -> [Lane; 4] {
+    let mut u = [[0.0; W]; 4];
+    let v: &[[f64; 2]] = &v[j * W..=j * W + W];
+    for l in 0..W {
+        let (a, b, idle) = (given.a[l], given.b[l], given.idle[l]);
+        u[0][l] = a * v[l][0] + idle;
+        u[1][l] = b * v[l][1];
+        u[2][l] = a * v[l + 1][0] + idle;
+        u[3][l] = b * v[l + 1][1];
+    }
+    u
+}
+
+/// What is free at a node and the next; None when everything is.
+#[inline]
+fn pins(free: Option<&[(bool, bool)]>, i: usize) -> Option<[(bool, bool); 2]> {
+    free.map(|free| [free[i], free.get(i + 1).copied().unwrap_or_default()])
+}
+
+/// A row of the system with the fixed unknowns' rows made the identity, their right-hand sides 0.
+#[inline]
+fn pinned(
+    free: Option<[(bool, bool); 2]>,
+    mut d: [f64; 3],
+    mut c: [f64; 4],
+    mut r: [f64; 2],
+) -> ([f64; 3], [f64; 4], [f64; 2]) {
+    let Some([own, next]) = free else { return (d, c, r) };
+    if !own.0 {
+        (d[0], d[1], r[0]) = (1.0, 0.0, 0.0);
+        (c[0], c[1]) = (0.0, 0.0);
+    }
+    if !own.1 {
+        (d[2], d[1], r[1]) = (1.0, 0.0, 0.0);
+        (c[2], c[3]) = (0.0, 0.0);
+    }
+    if !next.0 {
+        (c[0], c[2]) = (0.0, 0.0);
+    }
+    if !next.1 {
+        (c[1], c[3]) = (0.0, 0.0);
+    }
+    (d, c, r)
 }
