@@ -444,12 +444,46 @@ fn within(state: &State, change: &State, most: [f64; 2], out: &mut [Lane; 2]) {
     }
 }
 
-/// By bisection, from below.
+/// The largest step that leaves both definite, or `most`. Exact: the step must not depend on the order of segments.
 #[inline(never)]
 fn longest(from: &[f64; 9], by: &[f64; 9], most: f64) -> f64 {
+    // det(X + sD) as a polynomial in 1/s, by mixed determinants.
+    let adjoint = |x: &[f64; 9]| {
+        [
+            x[3] * x[5] - x[4] * x[4],
+            x[2] * x[4] - x[1] * x[5],
+            x[1] * x[4] - x[2] * x[3],
+            x[0] * x[5] - x[2] * x[2],
+            x[1] * x[2] - x[0] * x[4],
+            x[0] * x[3] - x[1] * x[1],
+        ]
+    };
+    let trace = |a: &[f64; 6], x: &[f64; 9]| {
+        (a[0] * x[0] + a[3] * x[3] + a[5] * x[5])
+            + 2.0 * (a[1] * x[1] + a[2] * x[2] + a[4] * x[4])
+    };
+    let (p, q) = (adjoint(from), adjoint(by));
+    let three = largest_root(
+        trace(&p, from) / 3.0,
+        trace(&p, by),
+        trace(&q, from),
+        trace(&q, by) / 3.0,
+    );
+    let two = largest_root(
+        from[6] * from[8] - from[7] * from[7],
+        (from[6] * by[8] + from[8] * by[6]) - 2.0 * (from[7] * by[7]),
+        by[6] * by[8] - by[7] * by[7],
+        0.0,
+    );
+    let root = if two > three { two } else { three };
+    let step = if root * most > 1.0 { 1.0 / root } else { most };
     let at = |s: f64| definite(&std::array::from_fn(|k| from[k] + s * by[k])) > 0.0;
-    let (mut lo, mut hi) = (0.0, most);
-    for _ in 0..8 {
+    if at(0.99 * step) {
+        return step;
+    }
+    // Rounding has spoilt the polynomial: bisection, from below.
+    let (mut lo, mut hi) = (0.0, step);
+    for _ in 0..30 {
         let middle = 0.5 * (lo + hi);
         if at(middle) {
             lo = middle;
@@ -458,6 +492,22 @@ fn longest(from: &[f64; 9], by: &[f64; 9], most: f64) -> f64 {
         }
     }
     lo
+}
+
+/// The largest root of `aβ³ + bβ² + cβ + d`, a > 0, all of whose roots are real: Newton's method from Samuelson's
+/// bound, from where it falls monotonically.
+fn largest_root(a: f64, b: f64, c: f64, d: f64) -> f64 {
+    let (b, c, d) = (b / a, c / a, d / a);
+    let mut root = (2.0 * (b * b - 3.0 * c).max(0.0).sqrt() - b) / 3.0;
+    for _ in 0..50 {
+        let value = ((root + b) * root + c) * root + d;
+        let next = root - value / ((3.0 * root + 2.0 * b) * root + c);
+        if !(next < root - 1e-14 * root.abs()) {
+            break;
+        }
+        root = next;
+    }
+    root
 }
 
 /// Go the two steps.

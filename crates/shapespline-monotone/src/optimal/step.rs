@@ -11,6 +11,8 @@ const FRACTION: f64 = 0.98;
 const AIM: f64 = 0.08;
 /// Shares of the way to the strictly feasible point that are tried when the primal point is not feasible.
 const SHARES: [f64; 8] = [0.0, 1e-12, 1e-9, 1e-6, 1e-4, 1e-3, 5e-3, 2e-2];
+/// Mass of a segment's multipliers, in units of the mean of tr XZ, from which on it counts as held at 0 somewhere.
+const HELD: f64 = 10.0;
 /// Energy weights below this share of the largest count as this: no unknown may lose its energy altogether.
 const LEAST: f64 = 1e-290;
 
@@ -35,7 +37,7 @@ pub(super) struct Problem {
     w: Vec<[f64; 2]>,
     pub(super) best: Vec<[f64; 2]>,
     /// tr XZ of all, and of the segments that count.
-    sum: f64,
+    pub(super) sum: f64,
     pub(super) gap: f64,
     /// The point that Newton's step ends at.
     ahead: Vec<[f64; 2]>,
@@ -56,11 +58,7 @@ impl Problem {
         self.free.clear();
         self.free.extend((0..=n).map(|i| super::free(&data.delta, i)));
         self.all_free = self.free.iter().all(|f| f.0 && f.1);
-        let weight = |i: usize| {
-            let (h, delta) = (data.h[i], data.delta[i]);
-            if is_flat(delta) { 0.0 } else { energy::weight(fairness, h, delta) }
-        };
-        self.scale = (0..n).map(weight).fold(0.0, f64::max);
+        self.scale = largest(data, fairness);
         self.given.clear();
         self.given.extend((0..chunks).map(|j| {
             let mut given =
@@ -71,9 +69,7 @@ impl Problem {
                 if is_flat(data.delta[i]) || !(p.1 || q.1) {
                     continue;
                 }
-                given.a[l] = 1.0 / data.delta[i];
-                given.b[l] = 0.25 * data.h[i] * given.a[l];
-                given.e[l] = (weight(i) / self.scale).max(LEAST);
+                (given.a[l], given.b[l], given.e[l]) = units(data, fairness, self.scale, i);
                 given.idle[l] = 0.0;
                 for (k, free) in [p.0, p.1, q.1, q.0].into_iter().enumerate() {
                     given.fixed[k][l] = f64::from(u8::from(!free));
@@ -89,37 +85,9 @@ impl Problem {
         }
     }
 
-    /// The energy's own minimiser to `v`, its elimination kept.
-    pub(super) fn unconstrained(&mut self) {
-        let mut system = std::mem::take(&mut self.natural);
-        let free = (!self.all_free).then_some(&self.free[..]);
-        system.clear();
-        let mut diagonal = [0.0; 3];
-        let mut rhs = [0.0; 2];
-        for i in 0..=self.n {
-            let mut next = ([0.0; 3], [0.0; 4], [0.0; 2]);
-            if i < self.n {
-                let (given, l) = (&self.given[i / W], i % W);
-                let (a, b, e) = (given.a[l], given.b[l], given.e[l] / 35.0);
-                let k = |p: usize, q: usize| e * HESSIAN[p][q];
-                let load = |p: usize| k(p, 0) + k(p, 2);
-                diagonal[0] += a * (a * k(0, 0));
-                diagonal[1] += a * (b * k(0, 1));
-                diagonal[2] += b * (b * k(1, 1));
-                rhs[0] += a * load(0);
-                rhs[1] += b * load(1);
-                next = (
-                    [a * (a * k(2, 2)), a * (b * k(2, 3)), b * (b * k(3, 3))],
-                    [a * (a * k(0, 2)), a * (b * k(0, 3)), b * (a * k(1, 2)), b * (b * k(1, 3))],
-                    [a * load(2), b * load(3)],
-                );
-            }
-            let (d, c, r) = pinned(pins(free, i), diagonal, next.1, rhs);
-            system.push(d, c, r);
-            (diagonal, rhs) = (next.0, next.2);
-        }
-        self.v[..=self.n].copy_from_slice(system.solve());
-        self.natural = system;
+    /// The energy's own minimiser, its elimination kept.
+    pub(super) fn unconstrained(&mut self, data: &Data, fairness: Fairness) -> &[[f64; 2]] {
+        natural(&mut self.natural, data, fairness, self.scale)
     }
 
     /// Start in the centre of the cones, the primal point at `inside`.
@@ -217,6 +185,17 @@ impl Problem {
         sum
     }
 
+    /// Segments whose multipliers have far more mass than the barrier alone would give them.
+    pub(super) fn active(&self) -> usize {
+        let least = HELD * self.sum / (W * self.given.len()) as f64;
+        let mut count = 0;
+        for (state, given) in self.states.iter().zip(&self.given) {
+            let held = |l: usize| cone::MEAN * state.y[2][l] > least;
+            count += (0..W).filter(|&l| given.idle[l] == 0.0 && held(l)).count();
+        }
+        count
+    }
+
     /// Put to `best` the primal point, or one between it and the strictly feasible one, that is feasible without
     /// doubt. None when only points far from it are.
     pub(super) fn feasible(&mut self, data: &Data) -> bool {
@@ -261,6 +240,61 @@ fn gather(rhs: &mut [[f64; 2]], j: usize, r: &[Lane; 4]) {
         rhs[i] = [rhs[i][0] + r[0][l], rhs[i][1] + r[1][l]];
         rhs[i + 1] = [r[2][l], r[3][l]];
     }
+}
+
+/// The largest energy weight.
+pub(super) fn largest(data: &Data, fairness: Fairness) -> f64 {
+    let segments = data.h.iter().zip(&data.delta).filter(|(_, delta)| !is_flat(**delta));
+    segments.fold(0.0, |most, (h, delta)| most.max(energy::weight(fairness, *h, *delta)))
+}
+
+/// 1/Δ and h/(4Δ), which make d and s dimensionless, and the energy's weight in units of the largest.
+#[inline]
+fn units(data: &Data, fairness: Fairness, scale: f64, i: usize) -> (f64, f64, f64) {
+    let (h, delta) = (data.h[i], data.delta[i]);
+    if is_flat(delta) {
+        return (0.0, 0.0, 0.0);
+    }
+    let a = 1.0 / delta;
+    (a, 0.25 * h * a, (energy::weight(fairness, h, delta) / scale).max(LEAST))
+}
+
+/// The energy's own minimiser. O(n).
+pub(super) fn natural<'a>(
+    system: &'a mut BlockElimination,
+    data: &Data,
+    fairness: Fairness,
+    scale: f64,
+) -> &'a [[f64; 2]] {
+    let n = data.len();
+    system.clear();
+    let mut diagonal = [0.0; 3];
+    let mut rhs = [0.0; 2];
+    let mut own = super::free(&data.delta, 0);
+    for i in 0..=n {
+        let mut right = ([0.0; 3], [0.0; 4], [0.0; 2], (false, false));
+        if i < n {
+            let (a, b, e) = units(data, fairness, scale, i);
+            let e = e / 35.0;
+            let k = |p: usize, q: usize| e * HESSIAN[p][q];
+            let load = |p: usize| k(p, 0) + k(p, 2);
+            diagonal[0] += a * (a * k(0, 0));
+            diagonal[1] += a * (b * k(0, 1));
+            diagonal[2] += b * (b * k(1, 1));
+            rhs[0] += a * load(0);
+            rhs[1] += b * load(1);
+            right = (
+                [a * (a * k(2, 2)), a * (b * k(2, 3)), b * (b * k(3, 3))],
+                [a * (a * k(0, 2)), a * (b * k(0, 3)), b * (a * k(1, 2)), b * (b * k(1, 3))],
+                [a * load(2), b * load(3)],
+                super::free(&data.delta, i + 1),
+            );
+        }
+        let (d, c, r) = pinned(Some([own, right.3]), diagonal, right.1, rhs);
+        system.push(d, c, r);
+        (diagonal, rhs, own) = (right.0, right.2, right.3);
+    }
+    system.solve()
 }
 
 /// The unknowns of a chunk's segments without dimension.
