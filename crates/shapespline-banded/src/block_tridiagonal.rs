@@ -39,11 +39,7 @@ impl BlockElimination {
     /// An empty system with room for `nodes` nodes.
     #[must_use]
     pub fn with_capacity(nodes: usize) -> Self {
-        Self {
-            rows: Vec::with_capacity(nodes),
-            g: Vec::with_capacity(nodes),
-            ..Self::default()
-        }
+        Self { rows: Vec::with_capacity(nodes), g: Vec::with_capacity(nodes), ..Self::default() }
     }
 
     /// Forget the system, keep the memory.

@@ -169,7 +169,6 @@ fn run(problem: &mut Problem, data: &Data, fairness: Fairness) -> Optimum {
     loop {
         steps += 1;
         let length = problem.step();
-        if std::env::var("DBG").is_ok() { println!("{steps} {length:?} {:e} {:e} sum {:e}", problem.gap, problem.energy(), problem.sum); }
         let last = steps == MAX_STEPS || !(length[0] + length[1] > STUCK);
         // The energy hardly grows from step to step: the last one known tells whether this one is worth finding.
         let mut close = problem.gap <= ENOUGH * energy;

@@ -137,13 +137,7 @@ fn force(f: [f64; 4]) -> [f64; 4] {
 /// Sums along the antidiagonals of both matrices, the second shifted by one: a quartic's pₖ.
 #[inline(always)]
 fn sums(x: &[f64; 9]) -> [f64; 5] {
-    [
-        x[0],
-        (x[1] + x[1]) + x[6],
-        x[3] + 2.0 * (x[2] + x[7]),
-        (x[4] + x[4]) + x[8],
-        x[5],
-    ]
+    [x[0], (x[1] + x[1]) + x[6], x[3] + 2.0 * (x[2] + x[7]), (x[4] + x[4]) + x[8], x[5]]
 }
 
 /// The inverses of the two Hankel matrices.
@@ -318,9 +312,9 @@ pub(super) fn factorise(given: &Given, state: &State, out: &mut Factors, aim: &m
             -(r33 + r34),
             r33,
         ];
-        let scale = [(a, a), (a, b), (a, a), (a, b), (b, b), (b, a), (b, b), (a, a), (a, b), (b, b)];
-        let block =
-            std::array::from_fn(|j| scale[j].0 * (scale[j].1 * (k[j] + e * ENERGY[j])));
+        let scale =
+            [(a, a), (a, b), (a, a), (a, b), (b, b), (b, a), (b, b), (a, a), (a, b), (b, b)];
+        let block = std::array::from_fn(|j| scale[j].0 * (scale[j].1 * (k[j] + e * ENERGY[j])));
         put(&mut out.zi, l, zi);
         put(&mut out.column, l, c);
         out.pivot[l] = pivot;
@@ -338,7 +332,12 @@ fn load(given: &Given, l: usize, y: &[f64; 5], dn: [f64; 4]) -> [f64; 4] {
     let n = [y[0] - OUTER * y[2], y[1] - INNER * y[2], y[3] - INNER * y[2], y[4] - OUTER * y[2]];
     let f = force(std::array::from_fn(|k| n[k] + dn[k]));
     let (a, b, e) = (given.a[l], given.b[l], given.e[l]);
-    [a * (f[0] + e * LOAD[0]), b * (f[1] + e * LOAD[1]), a * (f[2] + e * LOAD[0]), b * (f[3] - e * LOAD[1])]
+    [
+        a * (f[0] + e * LOAD[0]),
+        b * (f[1] + e * LOAD[1]),
+        a * (f[2] + e * LOAD[0]),
+        b * (f[3] - e * LOAD[1]),
+    ]
 }
 
 /// The moments' change from the new unknowns.
@@ -370,8 +369,7 @@ pub(super) fn correct(
         let p = sums(&std::array::from_fn(|k| mu * zi[k] - second[k]));
         let c = get(&f.column, l);
         let rest = (OUTER * (p[0] + p[4]) + (INNER * (p[1] + p[3]) + p[2])) - MEAN;
-        let t =
-            [p[0] - c[0] * rest, p[1] - c[1] * rest, p[3] - c[2] * rest, p[4] - c[3] * rest];
+        let t = [p[0] - c[0] * rest, p[1] - c[1] * rest, p[3] - c[2] * rest, p[4] - c[3] * rest];
         let dn = times4(&get(&f.ri, l), t);
         put(&mut out.second, l, second);
         put(&mut out.t, l, t);
@@ -459,16 +457,11 @@ fn longest(from: &[f64; 9], by: &[f64; 9], most: f64) -> f64 {
         ]
     };
     let trace = |a: &[f64; 6], x: &[f64; 9]| {
-        (a[0] * x[0] + a[3] * x[3] + a[5] * x[5])
-            + 2.0 * (a[1] * x[1] + a[2] * x[2] + a[4] * x[4])
+        (a[0] * x[0] + a[3] * x[3] + a[5] * x[5]) + 2.0 * (a[1] * x[1] + a[2] * x[2] + a[4] * x[4])
     };
     let (p, q) = (adjoint(from), adjoint(by));
-    let three = largest_root(
-        trace(&p, from) / 3.0,
-        trace(&p, by),
-        trace(&q, from),
-        trace(&q, by) / 3.0,
-    );
+    let three =
+        largest_root(trace(&p, from) / 3.0, trace(&p, by), trace(&q, from), trace(&q, by) / 3.0);
     let two = largest_root(
         from[6] * from[8] - from[7] * from[7],
         (from[6] * by[8] + from[8] * by[6]) - 2.0 * (from[7] * by[7]),

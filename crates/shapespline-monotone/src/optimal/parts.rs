@@ -31,4 +31,3 @@ pub(crate) fn rows(l: f64, r: f64) -> [[f64; 5]; 4] {
 pub(crate) fn gradient(w: &[f64; 5]) -> [f64; 4] {
     [w[0] + w[1] - 2.0 * w[2], w[1] - w[2], w[3] + w[4] - 2.0 * w[2], w[2] - w[3]]
 }
-

@@ -9,6 +9,10 @@ use shapespline_banded::block_tridiagonal::BlockElimination;
 const FRACTION: f64 = 0.98;
 /// What a step aims at, in units of the current barrier parameter.
 const AIM: f64 = 0.08;
+/// After a step shorter than this (the iterate has lost the centre) the next one aims at [`CENTRE`] instead: without,
+/// one fit in a thousand over twelve decades does not end.
+const SHORT: f64 = 0.3;
+const CENTRE: f64 = 0.8;
 /// Shares of the way to the strictly feasible point that are tried when the primal point is not feasible.
 const SHARES: [f64; 8] = [0.0, 1e-12, 1e-9, 1e-6, 1e-4, 1e-3, 5e-3, 2e-2];
 /// Mass of a segment's multipliers, in units of the mean of tr XZ, from which on it counts as held at 0 somewhere.
@@ -36,8 +40,10 @@ pub(super) struct Problem {
     pub(super) inside: Vec<[f64; 2]>,
     w: Vec<[f64; 2]>,
     pub(super) best: Vec<[f64; 2]>,
+    /// The shorter length of the last step.
+    length: f64,
     /// tr XZ of all, and of the segments that count.
-    pub(super) sum: f64,
+    sum: f64,
     pub(super) gap: f64,
     /// The point that Newton's step ends at.
     ahead: Vec<[f64; 2]>,
@@ -61,8 +67,13 @@ impl Problem {
         self.scale = largest(data, fairness);
         self.given.clear();
         self.given.extend((0..chunks).map(|j| {
-            let mut given =
-                Given { a: [0.0; W], b: [0.0; W], e: [0.0; W], idle: [1.0; W], fixed: [[0.0; W]; 4] };
+            let mut given = Given {
+                a: [0.0; W],
+                b: [0.0; W],
+                e: [0.0; W],
+                idle: [1.0; W],
+                fixed: [[0.0; W]; 4],
+            };
             for l in 0..W.min(n - j * W) {
                 let i = j * W + l;
                 let (p, q) = (self.free[i], self.free[i + 1]);
@@ -77,9 +88,14 @@ impl Problem {
             }
             given
         }));
-        for list in
-            [&mut self.v, &mut self.inside, &mut self.w, &mut self.best, &mut self.ahead, &mut self.rhs]
-        {
+        for list in [
+            &mut self.v,
+            &mut self.inside,
+            &mut self.w,
+            &mut self.best,
+            &mut self.ahead,
+            &mut self.rhs,
+        ] {
             list.clear();
             list.resize(chunks * W + 1, [0.0; 2]);
         }
@@ -100,6 +116,7 @@ impl Problem {
         }
         self.changes.resize(self.given.len(), self.states[0]);
         self.w.copy_from_slice(&self.inside);
+        self.length = 1.0;
         self.sum = self.given.len() as f64 * W as f64 * mass;
     }
 
@@ -111,7 +128,8 @@ impl Problem {
         for (j, given) in self.given.iter().enumerate() {
             cone::factorise(given, &self.states[j], &mut self.factors[j], &mut predictor[j]);
         }
-        let mu = AIM * self.sum / (5 * W * self.given.len()) as f64;
+        let aim = if self.length < SHORT { CENTRE } else { AIM };
+        let mu = aim * self.sum / (5 * W * self.given.len()) as f64;
         let mut system = std::mem::take(&mut self.system);
         system.clear();
         let mut diagonal = [0.0; 3];
@@ -160,6 +178,7 @@ impl Problem {
                 self.gap += (1.0 - given.idle[l]) * gap[l];
             }
         }
+        self.length = step[0].min(step[1]);
         for (w, ahead) in self.w.iter_mut().zip(&self.ahead) {
             *w = [w[0] + step[1] * (ahead[0] - w[0]), w[1] + step[1] * (ahead[1] - w[1])];
         }

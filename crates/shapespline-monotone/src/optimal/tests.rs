@@ -36,7 +36,7 @@ fn within_half_a_per_cent_of_the_reference() {
             let ratio = ours / energy::total(&data, Fairness::Bending, &d, &s);
             assert!(found.converged, "decades {decades} n {n} case {case}: {found:?}");
             assert!(
-                (0.999..1.0035).contains(&ratio),
+                (0.9997..1.0035).contains(&ratio),
                 "decades {decades} n {n} case {case}: {ratio}"
             );
             // The reference is not below the exact optimum, which is not below our bound.
@@ -72,8 +72,7 @@ fn hard_data_are_certified() {
         for fairness in [Fairness::Bending, Fairness::Parametric] {
             let found = optimise(&data, fairness);
             assert!(found.converged, "case {case} {fairness:?}: {} {}", found.steps, found.gap);
-            let v: Vec<[f64; 2]> =
-                found.d.iter().zip(&found.s).map(|(d, s)| [*d, *s]).collect();
+            let v: Vec<[f64; 2]> = found.d.iter().zip(&found.s).map(|(d, s)| [*d, *s]).collect();
             assert!(certified(&data, &v), "case {case}");
         }
     }
