@@ -29,6 +29,7 @@
 //! and 0.15 % above.
 
 mod cone;
+mod matrices;
 #[cfg(test)]
 pub(crate) mod parts;
 mod step;

@@ -45,10 +45,10 @@ pub(crate) fn optimise(data: &Data, fairness: Fairness) -> Optimum {
     }
     // A segment where the energy's own minimiser falls settles it for all, and what is beyond sixteen nodes hardly
     // matters there: most long data need no elimination of their whole length.
-    if n <= PROBE || optimal::rises(&part(data, 0..PROBE), fairness, PROBE - 16) {
-        if let Some(done) = optimal::unconstrained(data, fairness) {
-            return done;
-        }
+    if (n <= PROBE || optimal::rises(&part(data, 0..PROBE), fairness, PROBE - 16))
+        && let Some(done) = optimal::unconstrained(data, fairness)
+    {
+        return done;
     }
     let mut ranges = Vec::new();
     let mut start = 0;

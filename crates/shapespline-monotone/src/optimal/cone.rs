@@ -20,6 +20,10 @@
 //! rows of X₁ and X₂ vanish and the moments y₀, y₁ mean nothing. In this basis it is enough to give them values so
 //! large ([`FIRST`], [`SECOND`]) that the inverses are those of the rest to the last bit.
 
+use super::matrices::{
+    definite, hankel, inverse, inverse4, longest, product, ratio, sums, symmetric, times4,
+};
+
 /// Segments of a chunk. Every loop over them is free of branches, so that it runs on vectors.
 pub(super) const W: usize = 4;
 pub(super) type Lane = [f64; W];
@@ -132,140 +136,6 @@ pub(super) fn outer(u: [f64; 4]) -> [f64; 4] {
 fn force(f: [f64; 4]) -> [f64; 4] {
     let (l, r) = (4.0 * f[1], 4.0 * f[2]);
     [f[0] + l, l, r + f[3], -r]
-}
-
-/// Sums along the antidiagonals of both matrices, the second shifted by one: a quartic's pₖ.
-#[inline(always)]
-fn sums(x: &[f64; 9]) -> [f64; 5] {
-    [x[0], (x[1] + x[1]) + x[6], x[3] + 2.0 * (x[2] + x[7]), (x[4] + x[4]) + x[8], x[5]]
-}
-
-/// The inverses of the two Hankel matrices.
-#[inline(always)]
-fn inverse(y: &[f64; 5]) -> [f64; 9] {
-    let a00 = y[2] * y[4] - y[3] * y[3];
-    let a01 = y[2] * y[3] - y[1] * y[4];
-    let a02 = y[1] * y[3] - y[2] * y[2];
-    let a11 = y[0] * y[4] - y[2] * y[2];
-    let a12 = y[1] * y[2] - y[0] * y[3];
-    let a22 = y[0] * y[2] - y[1] * y[1];
-    let d = 1.0 / (y[0] * a00 + (y[1] * a01 + y[2] * a02));
-    let q = 1.0 / a02;
-    [d * a00, d * a01, d * a02, d * a11, d * a12, d * a22, q * y[3], -(q * y[2]), q * y[1]]
-}
-
-/// The inverse of a symmetric 4×4 matrix (upper triangle row by row) by 2×2 blocks.
-#[inline(always)]
-fn inverse4(r: &[f64; 10]) -> [f64; 10] {
-    let d = 1.0 / (r[0] * r[4] - r[1] * r[1]);
-    let (i00, i01, i11) = (d * r[4], -(d * r[1]), d * r[0]);
-    // P = A⁻¹C, S = D − CᵀP.
-    let p00 = i00 * r[2] + i01 * r[5];
-    let p01 = i00 * r[3] + i01 * r[6];
-    let p10 = i01 * r[2] + i11 * r[5];
-    let p11 = i01 * r[3] + i11 * r[6];
-    let s00 = r[7] - (r[2] * p00 + r[5] * p10);
-    let s01 = r[8] - (r[2] * p01 + r[5] * p11);
-    let s11 = r[9] - (r[3] * p01 + r[6] * p11);
-    let d = 1.0 / (s00 * s11 - s01 * s01);
-    let (t00, t01, t11) = (d * s11, -(d * s01), d * s00);
-    let q00 = p00 * t00 + p01 * t01;
-    let q01 = p00 * t01 + p01 * t11;
-    let q10 = p10 * t00 + p11 * t01;
-    let q11 = p10 * t01 + p11 * t11;
-    [
-        i00 + (q00 * p00 + q01 * p01),
-        i01 + (q00 * p10 + q01 * p11),
-        -q00,
-        -q01,
-        i11 + (q10 * p10 + q11 * p11),
-        -q10,
-        -q11,
-        t00,
-        t01,
-        t11,
-    ]
-}
-
-#[inline(always)]
-fn times4(r: &[f64; 10], t: [f64; 4]) -> [f64; 4] {
-    [
-        (r[0] * t[0] + r[1] * t[1]) + (r[2] * t[2] + r[3] * t[3]),
-        (r[1] * t[0] + r[4] * t[1]) + (r[5] * t[2] + r[6] * t[3]),
-        (r[2] * t[0] + r[5] * t[1]) + (r[7] * t[2] + r[8] * t[3]),
-        (r[3] * t[0] + r[6] * t[1]) + (r[8] * t[2] + r[9] * t[3]),
-    ]
-}
-
-/// `dZ Z⁻¹` of both, row by row.
-#[inline(always)]
-fn ratio(y: &[f64; 5], z: &[f64; 9]) -> [f64; 13] {
-    let row = |a: f64, b: f64, c: f64| {
-        [
-            a * z[0] + (b * z[1] + c * z[2]),
-            a * z[1] + (b * z[3] + c * z[4]),
-            a * z[2] + (b * z[4] + c * z[5]),
-        ]
-    };
-    let (p, q, r) = (row(y[0], y[1], y[2]), row(y[1], y[2], y[3]), row(y[2], y[3], y[4]));
-    [
-        p[0],
-        p[1],
-        p[2],
-        q[0],
-        q[1],
-        q[2],
-        r[0],
-        r[1],
-        r[2],
-        y[1] * z[6] + y[2] * z[7],
-        y[1] * z[7] + y[2] * z[8],
-        y[2] * z[6] + y[3] * z[7],
-        y[2] * z[7] + y[3] * z[8],
-    ]
-}
-
-/// The symmetric part of `X G` of both.
-#[inline(always)]
-fn symmetric(x: &[f64; 9], g: &[f64; 13]) -> [f64; 9] {
-    let entry = |a: [f64; 3], j: usize| a[0] * g[j] + (a[1] * g[3 + j] + a[2] * g[6 + j]);
-    let (r0, r1, r2) = ([x[0], x[1], x[2]], [x[1], x[3], x[4]], [x[2], x[4], x[5]]);
-    [
-        entry(r0, 0),
-        0.5 * (entry(r0, 1) + entry(r1, 0)),
-        0.5 * (entry(r0, 2) + entry(r2, 0)),
-        entry(r1, 1),
-        0.5 * (entry(r1, 2) + entry(r2, 1)),
-        entry(r2, 2),
-        x[6] * g[9] + x[7] * g[11],
-        0.5 * ((x[6] * g[10] + x[7] * g[12]) + (x[7] * g[9] + x[8] * g[11])),
-        x[7] * g[10] + x[8] * g[12],
-    ]
-}
-
-/// M's upper triangle: 00 01 02 03 04 11 12 13 14 22 23 24 33 34 44.
-#[inline(always)]
-fn product(z: &[f64; 9], x: &[f64; 9]) -> [f64; 15] {
-    [
-        z[0] * x[0],
-        z[0] * x[1] + z[1] * x[0],
-        z[0] * x[2] + (z[1] * x[1] + z[2] * x[0]),
-        z[1] * x[2] + z[2] * x[1],
-        z[2] * x[2],
-        (z[0] * x[3] + z[3] * x[0]) + (2.0 * (z[1] * x[1]) + z[6] * x[6]),
-        ((z[0] * x[4] + z[4] * x[0]) + (z[1] * x[3] + z[3] * x[1]))
-            + ((z[2] * x[1] + z[1] * x[2]) + (z[6] * x[7] + z[7] * x[6])),
-        ((z[1] * x[4] + z[4] * x[1]) + (z[2] * x[3] + z[3] * x[2])) + z[7] * x[7],
-        z[2] * x[4] + z[4] * x[2],
-        ((z[0] * x[5] + z[5] * x[0]) + (z[3] * x[3] + (z[6] * x[8] + z[8] * x[6])))
-            + 2.0 * ((z[1] * x[4] + z[4] * x[1]) + (z[2] * x[2] + z[7] * x[7])),
-        ((z[1] * x[5] + z[5] * x[1]) + (z[3] * x[4] + z[4] * x[3]))
-            + ((z[2] * x[4] + z[4] * x[2]) + (z[7] * x[8] + z[8] * x[7])),
-        z[2] * x[5] + (z[4] * x[4] + z[5] * x[2]),
-        (z[3] * x[5] + z[5] * x[3]) + (2.0 * (z[4] * x[4]) + z[8] * x[8]),
-        z[4] * x[5] + z[5] * x[4],
-        z[5] * x[5],
-    ]
 }
 
 /// The factors of a chunk, its part of the nodes' system, and the predictor's right-hand side (towards μ = 0).
@@ -397,24 +267,6 @@ pub(super) fn change(
     }
 }
 
-/// Positive exactly when both matrices of upper triangles `x` are positive definite.
-#[inline(always)]
-fn definite(x: &[f64; 9]) -> f64 {
-    let minor = x[0] * x[3] - x[1] * x[1];
-    let first = x[2] * (x[1] * x[4] - x[2] * x[3]) - x[4] * (x[0] * x[4] - x[1] * x[2]);
-    let whole = x[5] * minor + first;
-    let other = x[6] * x[8] - x[7] * x[7];
-    let least = |a: f64, b: f64| if a < b { a } else { b };
-    // NaN must not hide: it is passed on by the comparison's second branch only, so add it.
-    least(least(least(x[0], minor), least(whole, x[6])), other) + 0.0 * (whole + other)
-}
-
-/// The two Hankel matrices' upper triangles.
-#[inline(always)]
-fn hankel(y: &[f64; 5]) -> [f64; 9] {
-    [y[0], y[1], y[2], y[2], y[3], y[4], y[1], y[2], y[3]]
-}
-
 /// The largest steps, at most the given ones, that leave moments and matrices of the chunk positive definite.
 #[inline]
 pub(super) fn room(state: &State, change: &State, mut most: [f64; 2]) -> [f64; 2] {
@@ -440,67 +292,6 @@ fn within(state: &State, change: &State, most: [f64; 2], out: &mut [Lane; 2]) {
         out[0][l] = definite(&hankel(&std::array::from_fn(|k| y[k] + most[0] * dy[k])));
         out[1][l] = definite(&std::array::from_fn(|k| x[k] + most[1] * dx[k]));
     }
-}
-
-/// The largest step that leaves both definite, or `most`. Exact: the step must not depend on the order of segments.
-#[inline(never)]
-fn longest(from: &[f64; 9], by: &[f64; 9], most: f64) -> f64 {
-    // det(X + sD) as a polynomial in 1/s, by mixed determinants.
-    let adjoint = |x: &[f64; 9]| {
-        [
-            x[3] * x[5] - x[4] * x[4],
-            x[2] * x[4] - x[1] * x[5],
-            x[1] * x[4] - x[2] * x[3],
-            x[0] * x[5] - x[2] * x[2],
-            x[1] * x[2] - x[0] * x[4],
-            x[0] * x[3] - x[1] * x[1],
-        ]
-    };
-    let trace = |a: &[f64; 6], x: &[f64; 9]| {
-        (a[0] * x[0] + a[3] * x[3] + a[5] * x[5]) + 2.0 * (a[1] * x[1] + a[2] * x[2] + a[4] * x[4])
-    };
-    let (p, q) = (adjoint(from), adjoint(by));
-    let three =
-        largest_root(trace(&p, from) / 3.0, trace(&p, by), trace(&q, from), trace(&q, by) / 3.0);
-    let two = largest_root(
-        from[6] * from[8] - from[7] * from[7],
-        (from[6] * by[8] + from[8] * by[6]) - 2.0 * (from[7] * by[7]),
-        by[6] * by[8] - by[7] * by[7],
-        0.0,
-    );
-    let root = if two > three { two } else { three };
-    let step = if root * most > 1.0 { 1.0 / root } else { most };
-    let at = |s: f64| definite(&std::array::from_fn(|k| from[k] + s * by[k])) > 0.0;
-    if at(0.99 * step) {
-        return step;
-    }
-    // Rounding has spoilt the polynomial: bisection, from below.
-    let (mut lo, mut hi) = (0.0, step);
-    for _ in 0..30 {
-        let middle = 0.5 * (lo + hi);
-        if at(middle) {
-            lo = middle;
-        } else {
-            hi = middle;
-        }
-    }
-    lo
-}
-
-/// The largest root of `aβ³ + bβ² + cβ + d`, a > 0, all of whose roots are real: Newton's method from Samuelson's
-/// bound, from where it falls monotonically.
-fn largest_root(a: f64, b: f64, c: f64, d: f64) -> f64 {
-    let (b, c, d) = (b / a, c / a, d / a);
-    let mut root = (2.0 * (b * b - 3.0 * c).max(0.0).sqrt() - b) / 3.0;
-    for _ in 0..50 {
-        let value = ((root + b) * root + c) * root + d;
-        let next = root - value / ((3.0 * root + 2.0 * b) * root + c);
-        if !(next < root - 1e-14 * root.abs()) {
-            break;
-        }
-        root = next;
-    }
-    root
 }
 
 /// Go the two steps.
