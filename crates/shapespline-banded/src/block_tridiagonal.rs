@@ -24,10 +24,8 @@
 /// ```
 #[derive(Debug, Clone, Default)]
 pub struct BlockElimination {
-    /// `D'⁻¹ O` of every node, row by row.
-    w: Vec<[f64; 4]>,
-    /// `1/a`, `b/a`, `1/e` of every diagonal block's factors.
-    pivots: Vec<[f64; 3]>,
+    /// Of every node `D'⁻¹ O`, row by row, and `1/a`, `b/a`, `1/e` of the diagonal block's factors.
+    rows: Vec<[f64; 7]>,
     /// `D'⁻¹ r'` of every node, later the solution.
     g: Vec<[f64; 2]>,
     /// What the previous node subtracts from the next diagonal block and right-hand side.
@@ -41,18 +39,12 @@ impl BlockElimination {
     /// An empty system with room for `nodes` nodes.
     #[must_use]
     pub fn with_capacity(nodes: usize) -> Self {
-        Self {
-            w: Vec::with_capacity(nodes),
-            pivots: Vec::with_capacity(nodes),
-            g: Vec::with_capacity(nodes),
-            ..Self::default()
-        }
+        Self { rows: Vec::with_capacity(nodes), g: Vec::with_capacity(nodes), ..Self::default() }
     }
 
     /// Forget the system, keep the memory.
     pub fn clear(&mut self) {
-        self.w.clear();
-        self.pivots.clear();
+        self.rows.clear();
         self.g.clear();
         self.carry_diagonal = [0.0; 3];
         self.carry_rhs = [0.0; 2];
@@ -110,8 +102,7 @@ impl BlockElimination {
         ];
         self.carry_rhs =
             [coupling[0] * g[0] + coupling[2] * g[1], coupling[1] * g[0] + coupling[3] * g[1]];
-        self.w.push([w00, w01, w10, w11]);
-        self.pivots.push([inverse_a, l, inverse_e]);
+        self.rows.push([w00, w01, w10, w11, inverse_a, l, inverse_e]);
         self.g.push(g);
     }
 
@@ -125,11 +116,11 @@ impl BlockElimination {
     /// The solution for another right-hand side, given node by node in order. O(n), no factorisation.
     pub fn solve_again(&mut self, mut rhs: impl FnMut(usize) -> [f64; 2]) -> &[[f64; 2]] {
         let mut carry = [0.0; 2];
-        for (i, ((g, w), pivot)) in self.g.iter_mut().zip(&self.w).zip(&self.pivots).enumerate() {
+        for (i, (g, w)) in self.g.iter_mut().zip(&self.rows).enumerate() {
             let r = rhs(i);
             let (p, q) = (r[0] - carry[0], r[1] - carry[1]);
-            let second = (q - pivot[1] * p) * pivot[2];
-            *g = [p * pivot[0] - pivot[1] * second, second];
+            let second = (q - w[5] * p) * w[6];
+            *g = [p * w[4] - w[5] * second, second];
             // Oᵀ D'⁻¹ r' = (D'⁻¹ O)ᵀ r'.
             carry = [w[0] * p + w[2] * q, w[1] * p + w[3] * q];
         }
@@ -139,7 +130,7 @@ impl BlockElimination {
 
     fn backward(&mut self) {
         let mut next = [0.0; 2];
-        for (g, w) in self.g.iter_mut().zip(&self.w).rev() {
+        for (g, w) in self.g.iter_mut().zip(&self.rows).rev() {
             g[0] -= w[0] * next[0] + w[1] * next[1];
             g[1] -= w[2] * next[0] + w[3] * next[1];
             next = *g;
