@@ -2,15 +2,18 @@
 
 use crate::MonotoneError;
 use crate::Slopes;
-use crate::data::{Data, check_finite};
+use crate::data::{Data, PART, check_finite, copy, first};
 use crate::extrapolation::Extrapolation;
 use crate::slopes;
 use crate::spline::{Kind, MonotoneSpline};
+use rayon::prelude::*;
 use std::ops::Deref;
 
 /// λ is lowered by this much below the largest admissible one, so that the derivative stays strictly non-negative
 /// after rounding.
 const INSIDE: f64 = 1.0 - 1e-12;
+/// Newton steps at most: from the bound on, three or four are enough.
+const STEPS: usize = 60;
 
 /// Starting values of the shape parameters, non-negative.
 #[derive(Debug, Clone, PartialEq)]
@@ -112,14 +115,10 @@ impl MonotoneQuartic {
                 }
             }
         }
-        let mut scale = Vec::with_capacity(n);
-        let mut e = Vec::with_capacity(n);
-        for i in 0..n {
+        let lambda = |i: usize| {
             let delta = data.delta[i];
             if delta == 0.0 {
-                e.push(0.0);
-                scale.push(1.0);
-                continue;
+                return (1.0, 0.0);
             }
             let (alpha, beta) = options.shape.at(i);
             // In units of the secant everything is of order one.
@@ -129,12 +128,25 @@ impl MonotoneQuartic {
             let (m0, m1) = (over(d[i]), over(d[i + 1]));
             let full = 2.0 / 3.0 * (alpha * m0 - beta * m1);
             let lambda = largest_scale(m0, m1, full);
-            scale.push(lambda);
-            e.push(lambda * full * (delta * data.h[i]));
+            (lambda, lambda * full * (delta * data.h[i]))
+        };
+        let (mut scale, mut e) = (vec![0.0; n], vec![0.0; n]);
+        let part = |(k, (scale, e)): (usize, (&mut [f64], &mut [f64]))| {
+            for (j, (scale, e)) in scale.iter_mut().zip(e).enumerate() {
+                (*scale, *e) = lambda(k * PART + j);
+            }
+        };
+        if n < 2 * PART {
+            part((0, (&mut scale, &mut e)));
+        } else {
+            let parts = scale.par_chunks_mut(PART).zip(e.par_chunks_mut(PART));
+            parts.enumerate().for_each(part);
         }
+        let units = data.units();
+        drop(data);
         let spline =
-            MonotoneSpline::quartic(&data, x.to_vec(), y.to_vec(), &d, e, options.extrapolate);
-        if let Some(i) = spline.d.iter().position(|d| !d.is_finite()) {
+            MonotoneSpline::quartic(units, copy(x), copy(y), d, e, options.extrapolate);
+        if let Some(i) = first(&spline.d, |_, d| !d.is_finite()) {
             return Err(crate::data::out_of_range("secant slope", "y", i, y[i]));
         }
         Ok(Self { spline, shape: options.shape.clone(), scale })
@@ -208,9 +220,12 @@ fn check_shape(argument: &'static str, values: &[f64]) -> Result<(), MonotoneErr
 /// the end slopes over the secant, in [0, 2].
 ///
 /// The admissible e form an interval around 0 (non-negativity is an intersection of half-planes), so the boundary in
-/// one direction is a single point. It lies between the e at which the failing Bernstein coefficient reaches 0
-/// (still admissible) and the full e (known not to be); in that bracket Φ of theorem 1 changes sign exactly once.
-/// Roots of Φ outside the bracket, where B and C are positive and Φ means nothing, cannot be taken.
+/// one direction is a single point: there the derivative has a double root at some σ = t/(1−t), and with the
+/// coefficients a, 3B, 3C, d in powers of σ it is `d(τ − σ)²(τ + a/(dσ²))`. Hence `3C = a/σ² − 2dσ`, and B + C =
+/// 4 − a − d = K leaves `dσ⁴ − 2dσ³ − 3Kσ² − 2aσ + a = 0`. Its signs + − − − + allow two positive roots, and at 1 it is
+/// negative: one root below 1 (where the other coefficient fails, by symmetry the same case) and one above, which is
+/// wanted. Beyond it the quartic is convex, so that Newton's iteration from an upper bound falls towards it and to no
+/// other. Φ of theorem 1 is the discriminant of the same cubic, with roots that mean nothing besides.
 fn largest_scale(a: f64, d: f64, full: f64) -> f64 {
     let (b, c) = (2.0 - a + full, 2.0 - d - full);
     if b >= 0.0 && c >= 0.0 {
@@ -220,49 +235,25 @@ fn largest_scale(a: f64, d: f64, full: f64) -> f64 {
     // By symmetry (t ↔ 1 − t) let it be C that fails, at e > 0.
     let (a, d, full) = if c < 0.0 { (a, d, full) } else { (d, a, -full) };
     let room = 2.0 - d;
-    // Φ over A D-free scaling; negative or zero: non-negative derivative (theorem 1).
-    let phi = |e: f64| {
-        let (b, c) = (2.0 - a + e, room - e);
-        3.0 * (b * c) * (b * c) + 6.0 * (a * d) * (b * c)
-            - 4.0 * (a * c * c * c + b * b * b * d)
-            - (a * d) * (a * d)
-    };
-    if a == 0.0 && d == 0.0 {
-        return 1.0;
-    }
-    // Case 3 (D = 0): C ≥ 0 itself is necessary.
-    if d == 0.0 {
+    // Case 3 (D = 0): C ≥ 0 itself is necessary. So it is for a D whose share is below rounding.
+    if d < 1e-300 {
         return (room / full * INSIDE).min(1.0);
     }
-    if phi(full) <= 0.0 {
-        return 1.0;
-    }
-    let (mut lo, mut hi) = (room, full);
-    let (mut f_lo, mut f_hi) = (phi(lo), phi(hi));
-    // Φ(lo) ≤ 0 < Φ(hi): false position with halved weights (Illinois), bisection every fourth step.
-    let mut side = 0;
-    for k in 0..100 {
-        if hi - lo <= 1e-14 * hi {
+    let k = 3.0 * (4.0 - a - d).max(0.0);
+    // dσ(σ − 2) = 3K + 2a/σ − a/σ² ≤ 3K + a, for the root is at least 2.
+    let mut sigma = 1.0 + (1.0 + (k + a) / d).sqrt();
+    for _ in 0..STEPS {
+        let value = ((d * sigma - 2.0 * d) * sigma - k) * (sigma * sigma) - a * (2.0 * sigma - 1.0);
+        let slope = ((4.0 * d * sigma - 6.0 * d) * sigma - 2.0 * k) * sigma - 2.0 * a;
+        let step = value / slope;
+        sigma -= step;
+        if !(step > 1e-9 * sigma) {
             break;
         }
-        let secant = lo + (hi - lo) * (f_lo / (f_lo - f_hi));
-        let e = if k % 4 != 3 && secant > lo && secant < hi { secant } else { 0.5 * (lo + hi) };
-        let f = phi(e);
-        if f <= 0.0 {
-            (lo, f_lo) = (e, f);
-            if side == 1 {
-                f_hi *= 0.5;
-            }
-            side = 1;
-        } else {
-            (hi, f_hi) = (e, f);
-            if side == 2 {
-                f_lo *= 0.5;
-            }
-            side = 2;
-        }
     }
-    (lo * INSIDE / full).min(1.0)
+    // At the root the derivative touches zero: a relative error of σ counts with its square only in a, with itself in e.
+    let least = room + (2.0 * d * sigma - a / (sigma * sigma)) / 3.0;
+    (least * INSIDE / full).min(1.0)
 }
 
 #[cfg(test)]

@@ -70,6 +70,8 @@ pub fn paper_program(
     // Running out of steps or of rounding is an answer too: the energy tells how good it is.
     let _ = solver.optimize(&mut u);
     let s = place(&u);
-    let energy = data.energy_out(fairness, energy::total(&data, fairness, &d, &s));
-    Ok((data.seconds_out(&s), energy))
+    let energy = data.units().energy_out(fairness, energy::total(&data, fairness, &d, &s));
+    let mut s = s;
+    data.units().seconds_out(&mut s);
+    Ok((s, energy))
 }
