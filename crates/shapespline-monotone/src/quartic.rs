@@ -12,8 +12,6 @@ use std::ops::Deref;
 /// λ is lowered by this much below the largest admissible one, so that the derivative stays strictly non-negative
 /// after rounding.
 const INSIDE: f64 = 1.0 - 1e-12;
-/// Newton steps at most: from the bound on, three or four are enough.
-const STEPS: usize = 60;
 
 /// Starting values of the shape parameters, non-negative.
 #[derive(Debug, Clone, PartialEq)]
@@ -115,25 +113,14 @@ impl MonotoneQuartic {
                 }
             }
         }
-        let lambda = |i: usize| {
-            let delta = data.delta[i];
-            if delta == 0.0 {
-                return (1.0, 0.0);
-            }
-            let (alpha, beta) = options.shape.at(i);
-            // In units of the secant everything is of order one.
-            let inverse = 1.0 / delta;
-            let exact = inverse.is_finite() && inverse != 0.0;
-            let over = |d: f64| if exact { d * inverse } else { d / delta };
-            let (m0, m1) = (over(d[i]), over(d[i + 1]));
-            let full = 2.0 / 3.0 * (alpha * m0 - beta * m1);
-            let lambda = largest_scale(m0, m1, full);
-            (lambda, lambda * full * (delta * data.h[i]))
-        };
         let (mut scale, mut e) = (vec![0.0; n], vec![0.0; n]);
         let part = |(k, (scale, e)): (usize, (&mut [f64], &mut [f64]))| {
-            for (j, (scale, e)) in scale.iter_mut().zip(e).enumerate() {
-                (*scale, *e) = lambda(k * PART + j);
+            let start = k * PART;
+            match &options.shape {
+                Shape::Uniform(a) => segments(&data, &d, start, |_| (*a, *a), scale, e),
+                Shape::Segments { .. } => {
+                    segments(&data, &d, start, |i| options.shape.at(i), scale, e);
+                }
             }
         };
         if n < 2 * PART {
@@ -216,44 +203,72 @@ fn check_shape(argument: &'static str, values: &[f64]) -> Result<(), MonotoneErr
     }
 }
 
+/// λ and e (scaled) of the segments from `start` on.
+#[inline(always)]
+fn segments(
+    data: &Data,
+    d: &[f64],
+    start: usize,
+    shape: impl Fn(usize) -> (f64, f64),
+    scale: &mut [f64],
+    e: &mut [f64],
+) {
+    let n = scale.len().min(e.len());
+    let (h, delta) = (&data.h[start..start + n], &data.delta[start..start + n]);
+    let (left, right) = (&d[start..start + n], &d[start + 1..=start + n]);
+    // Nothing but arithmetic and selections: done for several segments at once.
+    for i in 0..n {
+        let (alpha, beta) = shape(start + i);
+        let flat = delta[i] == 0.0;
+        // In units of the secant everything is of order one.
+        let secant = if flat { 1.0 } else { delta[i] };
+        let (m0, m1) = (left[i] / secant, right[i] / secant);
+        let full = 2.0 / 3.0 * (alpha * m0 - beta * m1);
+        let lambda = largest_scale(m0, m1, full);
+        scale[i] = if flat { 1.0 } else { lambda };
+        e[i] = if flat { 0.0 } else { lambda * full * (delta[i] * h[i]) };
+    }
+}
+
 /// The largest λ ∈ [0, 1] for which the derivative (4) with `e = λ full` is non-negative on [0, 1]; `a`, `d` are
 /// the end slopes over the secant, in [0, 2].
 ///
 /// The admissible e form an interval around 0 (non-negativity is an intersection of half-planes), so the boundary in
 /// one direction is a single point: there the derivative has a double root at some σ = t/(1−t), and with the
-/// coefficients a, 3B, 3C, d in powers of σ it is `d(τ − σ)²(τ + a/(dσ²))`. Hence `3C = a/σ² − 2dσ`, and B + C =
+/// coefficients a, 3B, 3C, d in powers of s it is `d(s − σ)²(s + a/(dσ²))`. Hence `3C = a/σ² − 2dσ`, and B + C =
 /// 4 − a − d = K leaves `dσ⁴ − 2dσ³ − 3Kσ² − 2aσ + a = 0`. Its signs + − − − + allow two positive roots, and at 1 it is
 /// negative: one root below 1 (where the other coefficient fails, by symmetry the same case) and one above, which is
-/// wanted. Beyond it the quartic is convex, so that Newton's iteration from an upper bound falls towards it and to no
-/// other. Φ of theorem 1 is the discriminant of the same cubic, with roots that mean nothing besides.
+/// wanted. There the quartic rises and is convex, so that Newton's iteration finds it and no other. Φ of theorem 1 is
+/// the discriminant of the same cubic, with roots that mean nothing besides.
+#[inline(always)]
 fn largest_scale(a: f64, d: f64, full: f64) -> f64 {
     let (b, c) = (2.0 - a + full, 2.0 - d - full);
-    if b >= 0.0 && c >= 0.0 {
-        // Conditions (12), (13). Both cannot fail: B + C = 4 − a − d ≥ 0.
-        return 1.0;
-    }
+    // Conditions (12), (13). Both cannot fail: B + C = 4 − a − d ≥ 0.
+    let kept = (b >= 0.0) & (c >= 0.0);
     // By symmetry (t ↔ 1 − t) let it be C that fails, at e > 0.
-    let (a, d, full) = if c < 0.0 { (a, d, full) } else { (d, a, -full) };
-    let room = 2.0 - d;
-    // Case 3 (D = 0): C ≥ 0 itself is necessary. So it is for a D whose share is below rounding.
-    if d < 1e-300 {
-        return (room / full * INSIDE).min(1.0);
-    }
-    let k = 3.0 * (4.0 - a - d).max(0.0);
-    // dσ(σ − 2) = 3K + 2a/σ − a/σ² ≤ 3K + a, for the root is at least 2.
-    let mut sigma = 1.0 + (1.0 + (k + a) / d).sqrt();
-    for _ in 0..STEPS {
+    let turn = b < 0.0;
+    let (near, far) = (if turn { d } else { a }, if turn { a } else { d });
+    let full = if turn { -full } else { full };
+    let room = 2.0 - far;
+    let k = 4.0 - a - d;
+    let k = if k > 0.0 { 3.0 * k } else { 0.0 };
+    let (a, d) = (near, far);
+    // σ(σ − 2) = (3K + 2a/σ − a/σ²)/d ≤ (3K + a)/d, for the root is at least 2; and once more with the bound inserted:
+    // now within 0.5 %, whatever a and d, and three of Newton's steps make that less than rounding.
+    let inverse = 1.0 / d;
+    let bound = 1.0 / (1.0 + (1.0 + (k + a) * inverse).sqrt());
+    let mut sigma = 1.0 + (1.0 + (k + a * bound * (2.0 - bound)) * inverse).sqrt();
+    for _ in 0..3 {
         let value = ((d * sigma - 2.0 * d) * sigma - k) * (sigma * sigma) - a * (2.0 * sigma - 1.0);
         let slope = ((4.0 * d * sigma - 6.0 * d) * sigma - 2.0 * k) * sigma - 2.0 * a;
-        let step = value / slope;
-        sigma -= step;
-        if !(step > 1e-9 * sigma) {
-            break;
-        }
+        sigma -= value / slope;
     }
-    // At the root the derivative touches zero: a relative error of σ counts with its square only in a, with itself in e.
     let least = room + (2.0 * d * sigma - a / (sigma * sigma)) / 3.0;
-    (least * INSIDE / full).min(1.0)
+    // Case 3 (D = 0): C ≥ 0 itself is necessary. So it is for a D that is nothing beside the other numbers.
+    let least = if d < 1e-300 { room } else { least };
+    let lambda = least * INSIDE / full;
+    let lambda = if lambda < 1.0 { lambda } else { 1.0 };
+    if kept { 1.0 } else { lambda }
 }
 
 #[cfg(test)]

@@ -7,7 +7,7 @@ use shapespline::monotone::{
     Extrapolation, MonotoneQuartic, MonotoneQuintic, MonotoneSpline, PiecewisePolynomial,
 };
 
-use crate::{output::zeros, work::detached};
+use crate::{output::room, work::detached};
 
 /// From so many numbers on, columns are shared out over threads (the size from which `detached` has a pool).
 pub(crate) const PARALLEL: usize = 8192;
@@ -56,6 +56,17 @@ impl Column<'_> {
     #[inline]
     pub(crate) fn evaluate(&self, x: f64, nu: usize, mode: Option<Extrapolation>) -> f64 {
         both!(self, f => f.evaluate(x, nu, mode))
+    }
+    /// Many values as a fresh vector.
+    fn evaluate_many(&self, x: &[f64], nu: usize, mode: Option<Extrapolation>) -> Vec<f64> {
+        match self {
+            Self::Spline(f) => f.evaluate_many(x, nu, mode),
+            Self::Pieces(f) => {
+                let mut out = vec![0.0; x.len()];
+                f.evaluate_into(x, nu, mode, &mut out);
+                out
+            }
+        }
     }
     fn evaluate_into(&self, x: &[f64], nu: usize, mode: Option<Extrapolation>, out: &mut [f64]) {
         both!(self, f => f.evaluate_into(x, nu, mode, out));
@@ -143,16 +154,19 @@ impl Fits {
         nu: usize,
         mode: Option<Extrapolation>,
     ) -> PyResult<Vec<f64>> {
-        let mut out = zeros(self.len(), each)?;
+        let size = room(self.len(), each)?;
+        if self.len() == 1 {
+            return Ok(detached(py, size, || self.column(0).evaluate_many(of(0), nu, mode)));
+        }
+        let mut out = vec![0.0; size];
         if out.is_empty() {
             return Ok(out);
         }
-        let size = out.len();
         detached(py, size, || {
             let work = |(k, row): (usize, &mut [f64])| {
                 self.column(k).evaluate_into(of(k), nu, mode, row);
             };
-            if size < PARALLEL || self.len() == 1 {
+            if size < PARALLEL {
                 out.chunks_mut(each).enumerate().for_each(work);
             } else {
                 out.par_chunks_mut(each).enumerate().for_each(work);
