@@ -10,6 +10,8 @@ use std::array;
 
 /// Tiles that one thread works through at least.
 const TILES: usize = 128;
+/// Segments of a sorted tile that are gone through one after another.
+const RUNS: usize = 10;
 
 impl MonotoneSpline {
     pub(crate) fn searcher(&self, many: bool) -> Searcher<'_> {
@@ -92,11 +94,20 @@ impl MonotoneSpline {
         let inside = queries.iter().fold(true, |all, &x| all & (x >= first) & (x <= last));
         let sorted = queries.windows(2).fold(true, |all, w| all & (w[0] <= w[1]));
         if sorted && inside && nu == 0 {
-            let i = search.find(queries[0]);
-            if queries[queries.len() - 1] < self.x[i + 1] {
-                // Inside one segment, as fine samples are: what depends on it alone is loaded once.
-                let record = self.records[i];
-                return array::from_fn(|j| record.value(record.local(q[j])));
+            let n = queries.len();
+            let (i, j) = (search.find(queries[0]), queries[n - 1]);
+            let j = search.near(i, j);
+            if j - i <= RUNS {
+                // On few segments, as fine samples are: what depends on a segment alone is loaded once.
+                let mut out = [0.0; TILE];
+                let mut from = 0;
+                for k in i..=j {
+                    let run = queries[from..].iter().take_while(|v| k == j || **v < self.x[k + 1]);
+                    let to = from + run.count();
+                    self.records[k].values(&queries[from..to], &mut out[from..to]);
+                    from = to;
+                }
+                return out;
             }
         }
         let mut segments = [0; TILE];

@@ -9,8 +9,10 @@ use rayon::prelude::*;
 
 /// Tiles that one thread works through at least.
 const TILES: usize = 64;
-/// Steps that all queries of a tile take together; what has not converged by then goes on alone.
+/// Steps that all queries of a tile take together at most; what has not converged by then goes on alone.
 const STEPS: usize = 5;
+/// Queries of a tile that may go on alone.
+const FEW: usize = 12;
 
 /// What inverting needs, made once.
 #[derive(Debug)]
@@ -59,7 +61,7 @@ impl MonotoneSpline {
     /// inverse, with [`Extrapolation::CLIP`] the end. NaN gives NaN.
     ///
     /// The residual f(x) − y is of the size of an ulp of y, or of the change of f over an ulp of x where that is
-    /// larger. An iteration of third order for many at once; what it does not finish goes to one that never leaves
+    /// larger. An iteration of fourth order for many at once; what it does not finish goes to one that never leaves
     /// its bracket: no query can fail or hang. O(log N) a query; many run on all threads.
     ///
     /// # Errors
@@ -114,11 +116,13 @@ impl MonotoneSpline {
         lanes.solve();
         std::array::from_fn(|j| {
             // Queries outside the data fail the second test.
-            if lanes.doubt[j] <= 0.0 && (0.0..=1.0).contains(&lanes.share[j]) {
+            if (0.0..=1.0).contains(&lanes.from[0][j]) {
                 let record = self.record(segments[j]);
-                let t = lanes.t[j];
+                let sure = lanes.doubt[j] <= 0.0;
+                let t = if sure { lanes.t[j] } else { local(record, y[j], lanes.t[j]) };
                 let end = self.x()[segments[j] + 1];
                 let x = if t < 0.5 { record.x0 + t * record.h } else { end - (1.0 - t) * record.h };
+                let x = if y[j] == record.y[0] { record.x0 } else { x };
                 let x = if y[j] == record.y[1] { end } else { x };
                 x.max(record.x0).min(end)
             } else {
@@ -155,21 +159,21 @@ impl MonotoneSpline {
         if y == record.y[1] {
             return self.x()[i + 1];
         }
-        let t = local(record, y);
+        let t = local(record, y, f64::NAN);
         let x =
             if t < 0.5 { record.x0 + t * record.h } else { self.x()[i + 1] - (1.0 - t) * record.h };
         x.max(record.x0).min(self.x()[i + 1])
     }
 }
 
-/// t in [0, 1] with f(t) = y: Newton in a bracket.
+/// t in [0, 1] with f(t) = y: Newton in a bracket, from a start that is in it or from the chord.
 #[inline]
-fn local(record: &Record, y: f64) -> f64 {
+fn local(record: &Record, y: f64, start: f64) -> f64 {
     let dy = record.y[1] - record.y[0];
     let rising = dy > 0.0;
     let (from0, from1) = (y - record.y[0], y - record.y[1]);
     let (mut lo, mut hi) = (0.0f64, 1.0f64);
-    let mut t = from0 / dy;
+    let mut t = if start > 0.0 && start < 1.0 { start } else { from0 / dy };
     // A residual below half an ulp of y is as good as zero.
     let tolerance = 0.25 * f64::EPSILON * y.abs().max(f64::MIN_POSITIVE);
     for k in 0..80 {
@@ -200,14 +204,11 @@ fn local(record: &Record, y: f64) -> f64 {
     t
 }
 
-/// A tile of queries in their segments, number by number, so that the compiler can take several queries at once.
+/// A tile of queries in their segments, in units of Δy, number by number: the compiler takes several queries at once.
 struct Lanes {
-    dy: [f64; TILE],
     q: [[f64; TILE]; 4],
-    /// `y − y₀` and `y − y₁`.
+    /// `(y − y₀)/Δy` and `(y − y₁)/Δy`.
     from: [[f64; TILE]; 2],
-    /// `(y − y₀)/Δy`.
-    share: [f64; TILE],
     t: [f64; TILE],
     /// Positive (or NaN) where t is not known to be exact up to rounding.
     doubt: [f64; TILE],
@@ -217,73 +218,75 @@ impl Lanes {
     #[inline(always)]
     fn new<'a>(record: impl Fn(usize) -> &'a Record, y: &[f64; TILE]) -> Self {
         let mut l = Self {
-            dy: [0.0; TILE],
             q: [[0.0; TILE]; 4],
             from: [[0.0; TILE]; 2],
-            share: [0.0; TILE],
             t: [0.0; TILE],
             doubt: [1.0; TILE],
         };
+        let mut inverse = [0.0; TILE];
         for j in 0..TILE {
             let r = record(j);
-            l.dy[j] = r.y[1] - r.y[0];
+            inverse[j] = r.y[1] - r.y[0];
             (l.q[0][j], l.q[1][j], l.q[2][j], l.q[3][j]) = (r.q[0], r.q[1], r.q[2], r.q[3]);
             (l.from[0][j], l.from[1][j]) = (y[j] - r.y[0], y[j] - r.y[1]);
         }
         // The start: the inverse of the rational function (t² + m₀t(1−t))/(1 + (m₀+m₁−2)t(1−t)) through both ends with
         // their slopes (Gregory and Delbourgo's monotone one), a quadratic equation.
         for j in 0..TILE {
-            let inverse = 1.0 / l.dy[j];
-            let [q0, q1, q2, q3] = [l.q[0][j], l.q[1][j], l.q[2][j], l.q[3][j]];
-            let (m0, m1) = (
-                1.0 - ((q0 + q2) - (q1 + q3)) * inverse,
-                1.0 + ((q0 + q2) + (q1 + q3)) * inverse,
-            );
-            let r = l.from[0][j] * inverse;
+            let unit = 1.0 / inverse[j];
+            let q = [l.q[0][j] * unit, l.q[1][j] * unit, l.q[2][j] * unit, l.q[3][j] * unit];
+            let (even, odd) = (q[0] + q[2], q[1] + q[3]);
+            let (m0, m1) = (1.0 - (even - odd), 1.0 + (even + odd));
+            let r = l.from[0][j] * unit;
             let b = m0 - r * (m0 + m1 - 2.0);
-            let root = (b * b + 4.0 * r * (1.0 - b)).sqrt();
-            l.share[j] = r;
-            l.t[j] = 2.0 * r / (b + root);
+            l.t[j] = 2.0 * r / (b + (b * b + 4.0 * r * (1.0 - b)).sqrt());
+            (l.q[0][j], l.q[1][j], l.q[2][j], l.q[3][j]) = (q[0], q[1], q[2], q[3]);
+            (l.from[0][j], l.from[1][j]) = (r, l.from[1][j] * unit);
         }
         l
     }
 
-    /// Halley's steps until every query is done, or most are.
+    /// Householder's steps of fourth order until nearly all are done.
     #[inline(always)]
     fn solve(&mut self) {
-        for _ in 0..STEPS {
-            let mut worst = 0.0f64;
-            for j in 0..TILE {
-                let t = self.t[j];
-                let [q0, q1, q2, q3] = [self.q[0][j], self.q[1][j], self.q[2][j], self.q[3][j]];
-                let (dy, z, bubble) = (self.dy[j], 2.0 * t - 1.0, t * (t - 1.0));
-                let q = ((q3 * z + q2) * z + q1) * z + q0;
-                let dq = (3.0 * q3 * z + 2.0 * q2) * z + q1;
-                let ddq = 6.0 * q3 * z + 2.0 * q2;
-                let near = t < 0.5;
-                let tau = if near { t } else { t - 1.0 };
-                let goal = if near { self.from[0][j] } else { self.from[1][j] };
-                let residual = (dy * tau + bubble * q) - goal;
-                let slope = dy + z * q + 2.0 * bubble * dq;
-                let bend = 2.0 * q + 4.0 * (z * dq + bubble * ddq);
-                // −r/(f' − r f''/(2f')), with one division. What Halley's method leaves is of third order in the step:
-                // below rounding in the value once the step is below 4e-6 of the way to the nearer end and its
-                // correction of Newton's step below 1e-5.
-                let correction = residual * bend;
-                let square = 2.0 * slope * slope;
-                let step = 2.0 * residual * slope / (square - correction);
-                let next = t - step;
-                let room = if next < 0.5 { next } else { 1.0 - next };
-                let size = step.abs() - 4e-6 * room;
-                let bent = (correction.abs() - 1e-5 * square) / square;
-                let doubt = if size > bent { size } else { bent };
-                self.t[j] = next;
-                self.doubt[j] = doubt;
-                worst = if doubt > worst { doubt } else { worst };
-            }
-            if worst <= 0.0 {
+        self.step();
+        for _ in 1..STEPS {
+            self.step();
+            let doubtful: usize = self.doubt.iter().map(|d| usize::from(!(*d <= 0.0))).sum();
+            if doubtful <= FEW {
                 break;
             }
+        }
+    }
+
+    #[inline(always)]
+    fn step(&mut self) {
+        for j in 0..TILE {
+            let t = self.t[j];
+            let [q0, q1, q2, q3] = [self.q[0][j], self.q[1][j], self.q[2][j], self.q[3][j]];
+            let (z, bubble) = (2.0 * t - 1.0, t * (t - 1.0));
+            let q = ((q3 * z + q2) * z + q1) * z + q0;
+            let dq = (3.0 * q3 * z + 2.0 * q2) * z + q1;
+            let ddq = 6.0 * q3 * z + 2.0 * q2;
+            let near = t < 0.5;
+            let tau = if near { t } else { t - 1.0 };
+            let goal = if near { self.from[0][j] } else { self.from[1][j] };
+            // f and its first three derivatives.
+            let f = (tau + bubble * q) - goal;
+            let d1 = 1.0 + z * q + 2.0 * bubble * dq;
+            let d2 = 2.0 * q + 4.0 * (z * dq + bubble * ddq);
+            let d3 = 12.0 * (dq + z * ddq) + 48.0 * bubble * q3;
+            let square = d1 * d1;
+            let bend = f * d2;
+            let step = f * (square - 0.5 * bend) / (d1 * (square - bend) + f * f * d3 * (1.0 / 6.0));
+            let next = t - step;
+            // What is left is of fourth order: below rounding once the step is below 1e-4 of the way to the nearer
+            // end, and what it corrects of Newton's step below 1e-4.
+            let room = if next < 0.5 { next } else { 1.0 - next };
+            let size = step.abs() - 1e-4 * room;
+            let bent = bend.abs() - 2e-4 * square;
+            self.t[j] = next;
+            self.doubt[j] = if size > bent { size } else { bent };
         }
     }
 }

@@ -46,25 +46,49 @@ impl Record {
     /// The polynomial at local t, inside or outside [0, 1].
     #[inline(always)]
     pub(crate) fn raw(&self, t: f64) -> f64 {
-        let z = 2.0 * t - 1.0;
+        let (z, dy) = (2.0 * t - 1.0, self.y[1] - self.y[0]);
         let [q0, q1, q2, q3] = self.q;
         let q = ((q3 * z + q2) * z + q1) * z + q0;
-        let dy = self.y[1] - self.y[0];
-        // The nearer end is an index, not a branch: which one it is cannot be predicted.
-        let end = usize::from(t >= 0.5);
-        let tau = t - [0.0, 1.0][end];
-        self.y[end] + (dy * tau + (t * (t - 1.0)) * q)
+        let (end, tau) = if t > 0.5 { (self.y[1], t - 1.0) } else { (self.y[0], t) };
+        end + (dy * tau + (t * (t - 1.0)) * q)
+    }
+
+    /// [`Self::raw`] for t in [0, 1], the same to the last bit.
+    #[inline(always)]
+    fn inner(&self, t: f64) -> f64 {
+        /// Adding it rounds to integers, and leaves them in the lowest bits.
+        const MAGIC: f64 = 4_503_599_627_370_496.0;
+        let (z, dy) = (2.0 * t - 1.0, self.y[1] - self.y[0]);
+        let [q0, q1, q2, q3] = self.q;
+        let q = ((q3 * z + q2) * z + q1) * z + q0;
+        // The nearer end by rounding, not by a comparison that becomes a branch: it could not be predicted.
+        let rounded = t + MAGIC;
+        let end = self.y[(rounded.to_bits() & 1) as usize];
+        end + (dy * (t - (rounded - MAGIC)) + (t * (t - 1.0)) * q)
     }
 
     /// The value at local t in [0, 1], kept between the two data values.
     #[inline(always)]
     pub(crate) fn value(&self, t: f64) -> f64 {
-        let v = self.raw(t);
+        self.between(self.inner(t))
+    }
+
+    #[inline(always)]
+    fn between(&self, v: f64) -> f64 {
         let [a, b] = self.y;
         let (lo, hi) = (if a < b { a } else { b }, if a < b { b } else { a });
         // Not `clamp`: it panics on NaN bounds, and a comparison passes NaN queries through.
         let v = if v < lo { lo } else { v };
         if v > hi { hi } else { v }
+    }
+
+    /// The values at many places of the segment.
+    #[inline(always)]
+    pub(crate) fn values(&self, x: &[f64], out: &mut [f64]) {
+        // Here the ends are loaded once and selected from, for several places at once.
+        for (x, out) in x.iter().zip(out) {
+            *out = self.between(self.raw(self.local(*x)));
+        }
     }
 
     /// `f(t) − y₀` when t ≤ ½, `f(t) − y₁` otherwise, and df/dt.

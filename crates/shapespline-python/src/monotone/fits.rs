@@ -7,7 +7,7 @@ use shapespline::monotone::{
     Extrapolation, MonotoneQuartic, MonotoneQuintic, MonotoneSpline, PiecewisePolynomial,
 };
 
-use crate::{output::room, work::detached};
+use crate::{output::{room, zeros}, work::detached};
 
 /// From so many numbers on, columns are shared out over threads (the size from which `detached` has a pool).
 pub(crate) const PARALLEL: usize = 8192;
@@ -68,7 +68,7 @@ impl Column<'_> {
             }
         }
     }
-    fn evaluate_into(&self, x: &[f64], nu: usize, mode: Option<Extrapolation>, out: &mut [f64]) {
+    pub(crate) fn evaluate_into(&self, x: &[f64], nu: usize, mode: Option<Extrapolation>, out: &mut [f64]) {
         both!(self, f => f.evaluate_into(x, nu, mode, out));
     }
     fn derivative(&self, nu: usize) -> PiecewisePolynomial {
@@ -121,28 +121,60 @@ impl Fits {
         self.columns().map(|c| c.x().len()).sum()
     }
 
-    /// `work` on every column, in parallel where there is much of it.
+    /// `work` on every column (and its index), in parallel where there is much of it.
     pub(crate) fn map<T: Send>(
         &self,
         py: Python<'_>,
-        work: impl Fn(Column<'_>) -> T + Send + Sync,
+        work: impl Fn(usize, Column<'_>) -> T + Send + Sync,
     ) -> Vec<T> {
         let size = self.size();
         detached(py, size, || {
+            let one = |k| work(k, self.column(k));
             if size < PARALLEL || self.len() == 1 {
-                self.columns().map(&work).collect()
+                (0..self.len()).map(one).collect()
             } else {
-                (0..self.len()).into_par_iter().map(|k| work(self.column(k))).collect()
+                (0..self.len()).into_par_iter().map(one).collect()
             }
         })
     }
 
+    /// `work` of every column at its places `of(k)`, column after column; or the first column it fails on.
+    pub(crate) fn each_at<'q, E: Send>(
+        &self,
+        py: Python<'_>,
+        of: impl Fn(usize) -> &'q [f64] + Send + Sync,
+        work: impl Fn(Column<'_>, &[f64], &mut [f64]) -> Result<(), E> + Send + Sync,
+    ) -> PyResult<Result<Vec<f64>, (usize, E)>> {
+        let size = (0..self.len()).map(|k| of(k).len()).sum();
+        let mut out = zeros(size, 1)?;
+        let mut rest = &mut out[..];
+        let mut parts = Vec::with_capacity(self.len());
+        for k in 0..self.len() {
+            let part;
+            (part, rest) = rest.split_at_mut(of(k).len());
+            parts.push((k, part));
+        }
+        let done = detached(py, size, || {
+            let one = |(k, part): (usize, &mut [f64])| {
+                work(self.column(k), of(k), part).map_err(|e| (k, e))
+            };
+            // The first of the failures, whatever the order in which they come.
+            let failures: Vec<(usize, E)> = if size < PARALLEL || self.len() == 1 {
+                parts.into_iter().filter_map(|p| one(p).err()).collect()
+            } else {
+                parts.into_par_iter().filter_map(|p| one(p).err()).collect()
+            };
+            failures.into_iter().next().map_or(Ok(()), Err)
+        });
+        Ok(done.map(|()| out))
+    }
+
     pub(crate) fn derivative(&self, py: Python<'_>, nu: usize) -> Self {
-        Self::Pieces(self.map(py, |c| c.derivative(nu)))
+        Self::Pieces(self.map(py, |_, c| c.derivative(nu)))
     }
 
     pub(crate) fn antiderivative(&self, py: Python<'_>, nu: usize) -> Self {
-        Self::Pieces(self.map(py, |c| c.antiderivative(nu)))
+        Self::Pieces(self.map(py, |_, c| c.antiderivative(nu)))
     }
 
     /// Every column at the queries `of(k)`, column after column, each with `each` of them.
