@@ -127,12 +127,8 @@ pub fn solve_with_patience(
 ) -> Result<BoxQpSolution, BoxQpError> {
     validate(program)?;
     let n = program.diagonal.len();
-    let mut state = ActiveSet {
-        program,
-        x: vec![0.0; n],
-        place: vec![Place::Free; n],
-        work: vec![0.0; n],
-    };
+    let mut state =
+        ActiveSet { program, x: vec![0.0; n], place: vec![Place::Free; n], work: vec![0.0; n] };
     state.guess();
     let (mut iterations, mut safeguards) = (0, 0);
     let mut solved = false;

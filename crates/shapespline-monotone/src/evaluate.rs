@@ -120,7 +120,9 @@ impl MonotoneSpline {
             // The places after the last query are on the first segment, and cut off by the callers.
             return array::from_fn(|j| value(segments[j], q[j]));
         }
-        array::from_fn(|j| if j < queries.len() { self.at(segments[j], q[j], nu, mode) } else { 0.0 })
+        array::from_fn(
+            |j| if j < queries.len() { self.at(segments[j], q[j], nu, mode) } else { 0.0 },
+        )
     }
 
     #[inline]

@@ -11,6 +11,8 @@ use rayon::prelude::*;
 const TILES: usize = 64;
 /// Steps that all queries of a tile take together at most; what has not converged by then goes on alone.
 const STEPS: usize = 5;
+/// Adding it rounds to integers.
+const MAGIC: f64 = 4_503_599_627_370_496.0;
 /// Queries of a tile that may go on alone.
 const FEW: usize = 12;
 
@@ -268,17 +270,19 @@ impl Lanes {
             let q = ((q3 * z + q2) * z + q1) * z + q0;
             let dq = (3.0 * q3 * z + 2.0 * q2) * z + q1;
             let ddq = 6.0 * q3 * z + 2.0 * q2;
-            let near = t < 0.5;
-            let tau = if near { t } else { t - 1.0 };
-            let goal = if near { self.from[0][j] } else { self.from[1][j] };
+            // From the nearer end, 0 or 1, by arithmetic alone: a choice of what to load keeps the compiler from taking
+            // several queries at once.
+            let end = (t + MAGIC) - MAGIC;
+            let goal = (1.0 - end) * self.from[0][j] + end * self.from[1][j];
             // f and its first three derivatives.
-            let f = (tau + bubble * q) - goal;
+            let f = ((t - end) + bubble * q) - goal;
             let d1 = 1.0 + z * q + 2.0 * bubble * dq;
             let d2 = 2.0 * q + 4.0 * (z * dq + bubble * ddq);
             let d3 = 12.0 * (dq + z * ddq) + 48.0 * bubble * q3;
             let square = d1 * d1;
             let bend = f * d2;
-            let step = f * (square - 0.5 * bend) / (d1 * (square - bend) + f * f * d3 * (1.0 / 6.0));
+            let step =
+                f * (square - 0.5 * bend) / (d1 * (square - bend) + f * f * d3 * (1.0 / 6.0));
             let next = t - step;
             // What is left is of fourth order: below rounding once the step is below 1e-4 of the way to the nearer
             // end, and what it corrects of Newton's step below 1e-4.

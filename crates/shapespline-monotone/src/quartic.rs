@@ -9,6 +9,8 @@ use crate::spline::{Kind, MonotoneSpline};
 use rayon::prelude::*;
 use std::ops::Deref;
 
+/// Segments whose λ are computed together.
+const LANES: usize = 32;
 /// λ is lowered by this much below the largest admissible one, so that the derivative stays strictly non-negative
 /// after rounding.
 const INSIDE: f64 = 1.0 - 1e-12;
@@ -131,8 +133,7 @@ impl MonotoneQuartic {
         }
         let units = data.units();
         drop(data);
-        let spline =
-            MonotoneSpline::quartic(units, copy(x), copy(y), d, e, options.extrapolate);
+        let spline = MonotoneSpline::quartic(units, copy(x), copy(y), d, e, options.extrapolate);
         if let Some(i) = first(&spline.d, |_, d| !d.is_finite()) {
             return Err(crate::data::out_of_range("secant slope", "y", i, y[i]));
         }
@@ -176,9 +177,15 @@ impl MonotoneQuartic {
             let a = 3.0 * (2.0 * (dy - m0) + e);
             let b = 3.0 * (m0 - m1 - 2.0 * e);
             let c = 3.0 * (2.0 * (m1 - dy) + e);
+            let size = a.abs().max(b.abs()).max(c.abs());
+            if size == 0.0 {
+                continue;
+            }
+            // In units of the largest: squares that overflow have opposite signs.
+            let (a, b, c) = (a / size, b / size, c / size);
             let mean =
                 (6.0 * (a * a + c * c) + 6.0 * b * (a + c) + 2.0 * a * c + 4.0 * b * b) / 30.0;
-            sum += mean / h / h / h;
+            sum += mean * (size / h) * (size / h) / h;
         }
         sum
     }
@@ -216,17 +223,27 @@ fn segments(
     let n = scale.len().min(e.len());
     let (h, delta) = (&data.h[start..start + n], &data.delta[start..start + n]);
     let (left, right) = (&d[start..start + n], &d[start + 1..=start + n]);
-    // Nothing but arithmetic and selections: done for several segments at once.
-    for i in 0..n {
-        let (alpha, beta) = shape(start + i);
-        let flat = delta[i] == 0.0;
-        // In units of the secant everything is of order one.
-        let secant = if flat { 1.0 } else { delta[i] };
-        let (m0, m1) = (left[i] / secant, right[i] / secant);
-        let full = 2.0 / 3.0 * (alpha * m0 - beta * m1);
-        let lambda = largest_scale(m0, m1, full);
-        scale[i] = if flat { 1.0 } else { lambda };
-        e[i] = if flat { 0.0 } else { lambda * full * (delta[i] * h[i]) };
+    // Nothing but arithmetic and selections, from one small array to another: done for several segments at once.
+    for from in (0..n).step_by(LANES) {
+        let lanes = LANES.min(n - from);
+        let (mut m0, mut m1, mut full) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
+        for j in 0..lanes {
+            let secant = delta[from + j];
+            let (alpha, beta) = shape(start + from + j);
+            // In units of the secant everything is of order one.
+            let secant = if secant == 0.0 { 1.0 } else { secant };
+            (m0[j], m1[j]) = (left[from + j] / secant, right[from + j] / secant);
+            full[j] = 2.0 / 3.0 * (alpha * m0[j] - beta * m1[j]);
+        }
+        let mut lambda = [0.0; LANES];
+        for j in 0..LANES {
+            lambda[j] = largest_scale(m0[j], m1[j], full[j]);
+        }
+        // Flat segments have slopes and e of zero, and a λ of one, as they are.
+        for j in 0..lanes {
+            scale[from + j] = lambda[j];
+            e[from + j] = lambda[j] * full[j] * (delta[from + j] * h[from + j]);
+        }
     }
 }
 

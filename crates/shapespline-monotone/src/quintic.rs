@@ -8,8 +8,8 @@ use crate::optimal::coefficients;
 use crate::program::admissible_slopes;
 use crate::quartic_form::certified_nonnegative;
 use crate::slopes;
-use crate::stretches;
 use crate::spline::{Kind, MonotoneSpline};
+use crate::stretches;
 use crate::windows;
 use std::ops::Deref;
 

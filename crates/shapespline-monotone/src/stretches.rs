@@ -69,8 +69,9 @@ fn solve_by(
             let own = (program.diagonal[row] * x[row]).abs() + program.linear[row].abs();
             AGREE * own / program.off_diagonal[off]
         });
-        solution.active =
-            (first..=last).filter(|&i| x[i] == program.lower[i] || x[i] == program.upper[i]).count();
+        solution.active = (first..=last)
+            .filter(|&i| x[i] == program.lower[i] || x[i] == program.upper[i])
+            .count();
         solution.x.truncate(last + 1);
         solution.x.drain(..first);
         Ok(Stretch { nodes, solution, beyond, room })
@@ -147,8 +148,13 @@ mod tests {
                 for i in 0..d.len() {
                     let near = (i.max(3) - 3..d.len().min(i + 4)).map(|k| whole.x[k].abs());
                     let size = near.fold(0.0, f64::max);
-                    assert!((parts.x[i] - whole.x[i]).abs() <= 1e-13 * size, "case {case} node {i}");
-                    active += usize::from(parts.x[i] == program.lower[i] || parts.x[i] == program.upper[i]);
+                    assert!(
+                        (parts.x[i] - whole.x[i]).abs() <= 1e-13 * size,
+                        "case {case} node {i}"
+                    );
+                    active += usize::from(
+                        parts.x[i] == program.lower[i] || parts.x[i] == program.upper[i],
+                    );
                 }
                 assert_eq!(parts.active, active);
             }

@@ -1,13 +1,19 @@
 //! One function a column, of any of the three kinds.
 
-use pyo3::prelude::*;
+use std::ops::ControlFlow;
+
+use pyo3::{exceptions::PyKeyboardInterrupt, prelude::*};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use shapespline::monotone::{
-    Extrapolation, MonotoneQuartic, MonotoneQuintic, MonotoneSpline, PiecewisePolynomial,
+    Extrapolation, MonotoneError, MonotoneQuartic, MonotoneQuintic, MonotoneSpline,
+    PiecewisePolynomial,
 };
 
-use crate::{output::{room, zeros}, work::detached};
+use crate::{
+    output::{room, zeros},
+    work::{detached, interruptible_many},
+};
 
 /// From so many numbers on, columns are shared out over threads (the size from which `detached` has a pool).
 pub(crate) const PARALLEL: usize = 8192;
@@ -68,7 +74,13 @@ impl Column<'_> {
             }
         }
     }
-    pub(crate) fn evaluate_into(&self, x: &[f64], nu: usize, mode: Option<Extrapolation>, out: &mut [f64]) {
+    pub(crate) fn evaluate_into(
+        &self,
+        x: &[f64],
+        nu: usize,
+        mode: Option<Extrapolation>,
+        out: &mut [f64],
+    ) {
         both!(self, f => f.evaluate_into(x, nu, mode, out));
     }
     fn derivative(&self, nu: usize) -> PiecewisePolynomial {
@@ -82,6 +94,36 @@ impl Column<'_> {
     }
     pub(crate) fn solve(&self, y: f64, mode: Option<Extrapolation>) -> Vec<f64> {
         both!(self, f => f.solve(y, mode))
+    }
+}
+
+/// `count` fits on `size` numbers, in parallel where there is much to do, with a look for Ctrl-C before each; or the
+/// error of one of them and which.
+pub(crate) fn fit_all<F: Send>(
+    py: Python<'_>,
+    size: usize,
+    count: usize,
+    one: impl Fn(usize) -> Result<F, MonotoneError> + Send + Sync,
+) -> PyResult<Result<Vec<F>, (usize, MonotoneError)>> {
+    let fit = |k: usize| one(k).map_err(|error| Some((k, error)));
+    let fits: Result<Vec<F>, _> = if size < PARALLEL {
+        py.detach(|| (0..count).map(fit).collect())
+    } else {
+        interruptible_many(py, |go_on| {
+            let fit = |k| if go_on() == ControlFlow::Break(()) { Err(None) } else { fit(k) };
+            if count == 1 {
+                // On this thread: what a long fit does itself in parallel finds the pool free.
+                fit(0).map(|f| vec![f])
+            } else {
+                (0..count).into_par_iter().map(fit).collect()
+            }
+        })?
+    };
+    match fits {
+        Ok(fits) => Ok(Ok(fits)),
+        Err(Some(error)) => Ok(Err(error)),
+        // Whoever asked to stop has been heard above.
+        Err(None) => Err(PyKeyboardInterrupt::new_err(())),
     }
 }
 

@@ -1,6 +1,6 @@
 //! Many data sets with their own x in one call: `fit_many_monotone`.
 
-use std::{ops::ControlFlow, sync::Arc};
+use std::sync::Arc;
 
 use pyo3::{
     PyClassInitializer,
@@ -8,14 +8,13 @@ use pyo3::{
     prelude::*,
     types::PyBytes,
 };
-use rayon::prelude::*;
 use shapespline::monotone::{
     self, Extrapolation, Fairness, MonotoneError, QuarticOptions, QuinticOptions, Shape, Slopes,
 };
 
 use super::{
     diagnostics::MonotoneDiagnostics,
-    fits::{Column, Fits, PARALLEL},
+    fits::{Column, Fits, fit_all},
     function::{PiecewisePolynomial, damaged, read},
     layout::Layout,
     options::{self, SlopesOption, monotone_error},
@@ -25,11 +24,8 @@ use crate::{
     input::{Array, Numbers, Offsets, Query, array, kind, numbers, text},
     options::choose,
     output::{FloatArray, shaped},
-    work::{detached, interruptible},
+    work::detached,
 };
-
-/// Rows that are fitted between two looks for Ctrl-C.
-const BATCH: usize = 4096;
 
 /// Functions of many rows, each with its own knots: the base of `MonotoneRows`.
 ///
@@ -472,11 +468,7 @@ pub(crate) fn _rows_from_bytes(py: Python<'_>, data: &[u8]) -> PyResult<Py<PyAny
 }
 
 /// Where the rows start, and where the last one ends.
-fn offsets_of(
-    x: &Array<'_>,
-    y: &Array<'_>,
-    offsets: Option<Offsets>,
-) -> PyResult<Vec<usize>> {
+fn offsets_of(x: &Array<'_>, y: &Array<'_>, offsets: Option<Offsets>) -> PyResult<Vec<usize>> {
     if x.shape() != y.shape() {
         return Err(PyValueError::new_err(format!(
             "x and y must have the same shape, got {} and {}",
@@ -641,25 +633,7 @@ fn fit_rows<F: Send>(
     fit: impl Fn(usize, usize) -> Result<F, MonotoneError> + Send + Sync,
 ) -> PyResult<Vec<F>> {
     let (rows, size) = (bounds.len() - 1, bounds[bounds.len() - 1]);
-    let one = |k: usize| {
-        fit(bounds[k], bounds[k + 1])
-            .map_err(|source| MonotoneError::InRow { row: k, source: Box::new(source) })
-    };
-    interruptible(py, size, |monitor| {
-        let mut fits = Vec::with_capacity(rows);
-        for start in (0..rows).step_by(BATCH) {
-            let batch = start..rows.min(start + BATCH);
-            let some: Result<Vec<F>, MonotoneError> = if size < PARALLEL {
-                batch.map(&one).collect()
-            } else {
-                batch.into_par_iter().map(&one).collect()
-            };
-            fits.extend(some?);
-            if monitor() == ControlFlow::Break(()) {
-                break;
-            }
-        }
-        Ok(fits)
-    })?
-    .map_err(|error| monotone_error(&error))
+    fit_all(py, size, rows, |k| fit(bounds[k], bounds[k + 1]))?.map_err(|(row, source)| {
+        monotone_error(&MonotoneError::InRow { row, source: Box::new(source) })
+    })
 }
