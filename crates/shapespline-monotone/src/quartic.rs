@@ -235,8 +235,14 @@ fn segments(
             (m0[j], m1[j]) = (left[from + j] / secant, right[from + j] / secant);
             full[j] = 2.0 / 3.0 * (alpha * m0[j] - beta * m1[j]);
         }
-        let mut lambda = [0.0; LANES];
-        for j in 0..LANES {
+        // Those whose conditions (12), (13) fail, listed without a branch: which they are cannot be predicted.
+        let (mut failing, mut count) = ([0; LANES], 0);
+        for j in 0..lanes {
+            failing[count] = j;
+            count += usize::from(!keeps(m0[j], m1[j], full[j]));
+        }
+        let mut lambda = [1.0; LANES];
+        for &j in &failing[..count] {
             lambda[j] = largest_scale(m0[j], m1[j], full[j]);
         }
         // Flat segments have slopes and e of zero, and a λ of one, as they are.
@@ -245,6 +251,13 @@ fn segments(
             e[from + j] = lambda[j] * full[j] * (delta[from + j] * h[from + j]);
         }
     }
+}
+
+/// Conditions (12), (13): whether the full e leaves both inner coefficients of the derivative non-negative. Both
+/// cannot fail: their sum is 4 − a − d ≥ 0.
+#[inline(always)]
+fn keeps(a: f64, d: f64, full: f64) -> bool {
+    (2.0 - a + full >= 0.0) & (2.0 - d - full >= 0.0)
 }
 
 /// The largest λ ∈ [0, 1] for which the derivative (4) with `e = λ full` is non-negative on [0, 1]; `a`, `d` are
@@ -259,11 +272,9 @@ fn segments(
 /// the discriminant of the same cubic, with roots that mean nothing besides.
 #[inline(always)]
 fn largest_scale(a: f64, d: f64, full: f64) -> f64 {
-    let (b, c) = (2.0 - a + full, 2.0 - d - full);
-    // Conditions (12), (13). Both cannot fail: B + C = 4 − a − d ≥ 0.
-    let kept = (b >= 0.0) & (c >= 0.0);
+    let kept = keeps(a, d, full);
     // By symmetry (t ↔ 1 − t) let it be C that fails, at e > 0.
-    let turn = b < 0.0;
+    let turn = 2.0 - a + full < 0.0;
     let (near, far) = (if turn { d } else { a }, if turn { a } else { d });
     let full = if turn { -full } else { full };
     let room = 2.0 - far;

@@ -76,6 +76,9 @@ pub fn paper_program(
     Ok((s, energy))
 }
 
+/// How often the optimal program is taken up again at most.
+const RESTARTS: usize = 50;
+
 /// One linear condition `constant + Σ factor·unknown ≥ 0`.
 struct Row {
     factors: [(usize, f64); 4],
@@ -205,11 +208,19 @@ pub fn optimal_program(
     let _ = solver.set_lower_bounds(&bound(f64::NEG_INFINITY));
     let _ = solver.set_upper_bounds(&bound(f64::INFINITY));
     let _ = solver.add_inequality_mconstraint(rows.len(), negated, (), &vec![1e-12; rows.len()]);
-    let _ = solver.set_xtol_rel(1e-12);
-    let _ = solver.set_ftol_rel(1e-13);
+    let _ = solver.set_xtol_rel(1e-13);
+    let _ = solver.set_ftol_rel(1e-15);
     let _ = solver.set_maxeval(2000);
-    // Running out of steps or of rounding is an answer too: the energy tells how good it is.
-    let _ = solver.optimize(&mut v);
+    // SLSQP stops where its picture of the second derivatives has worn out; begun anew it goes on. Running out of steps
+    // or of rounding is an answer too: the energy tells how good it is.
+    let mut least = f64::INFINITY;
+    for _ in 0..RESTARTS {
+        let (Ok((_, value)) | Err((_, value))) = solver.optimize(&mut v);
+        if !(value < least * (1.0 - 1e-10)) {
+            break;
+        }
+        least = value;
+    }
     let (mut d, mut s): (Vec<f64>, Vec<f64>) =
         (0..=n).map(|i| (v[2 * i] * unit[2 * i], v[2 * i + 1] * unit[2 * i + 1])).unzip();
     let units = data.units();
