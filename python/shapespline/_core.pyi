@@ -519,6 +519,7 @@ class MonotoneDiagnostics:
 
 def _function_from_bytes(data: bytes) -> PiecewisePolynomial: ...
 
+@disjoint_base
 class PiecewiseRows:
     def __new__(cls) -> Self: ...
     def __call__(
