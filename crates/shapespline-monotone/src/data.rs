@@ -1,7 +1,11 @@
 //! Checked data in scaled units, so that nothing over- or underflows on the way to the coefficients.
 
 use crate::MonotoneError;
+use rayon::prelude::*;
+use std::ops::Range;
 
+/// Numbers from which passes over the data are shared out over threads, in parts of this size.
+pub(crate) const PART: usize = 1 << 14;
 /// Quantities beyond this in scaled units leave no room for the products of the programs.
 const ROOM: f64 = 1e140;
 
@@ -32,8 +36,121 @@ pub(crate) fn exponent(value: f64) -> i32 {
     }
 }
 
-/// Spacings and secants of checked data in units `2^ex` of x and `2^ey` of y, where the mean spacing and the
-/// largest step are about one.
+/// The units of scaled quantities: `2^ex` of x and `2^ey` of y, in which the mean spacing and the largest step are
+/// about one.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Units {
+    pub(crate) ex: i32,
+    pub(crate) ey: i32,
+}
+
+impl Units {
+    /// Check the data and choose units. O(N).
+    pub(crate) fn of(x: &[f64], y: &[f64]) -> Result<Self, MonotoneError> {
+        let step = check(x, y)?;
+        let n = x.len() - 1;
+        let ex = exponent((x[n] / n as f64) - (x[0] / n as f64));
+        let ey = if step > 0.0 { exponent(step) } else { 0 };
+        Ok(Self { ex, ey })
+    }
+
+    /// Spacing of x, scaled.
+    #[inline]
+    pub(crate) fn spacing(self, x: &[f64], i: usize) -> f64 {
+        PowerOfTwo::new(-self.ex).scale(x[i + 1] - x[i])
+    }
+
+    /// A scaled difference of y in the data's units.
+    pub(crate) fn y(self) -> PowerOfTwo {
+        PowerOfTwo::new(self.ey)
+    }
+
+    /// Slopes in scaled units to those of the data.
+    pub(crate) fn slopes_out(self, d: &mut [f64]) {
+        let unit = PowerOfTwo::new(self.ey - self.ex);
+        each(d, |_, d| unit.scale(d));
+    }
+
+    /// Second derivatives in scaled units to those of the data.
+    pub(crate) fn seconds_out(self, s: &mut [f64]) {
+        let (a, b) = (PowerOfTwo::new(self.ey - self.ex), PowerOfTwo::new(-self.ex));
+        each(s, |_, s| b.scale(a.scale(s)));
+    }
+
+    /// Differences of y in scaled units to those of the data.
+    pub(crate) fn values_out(self, v: &mut [f64]) {
+        each(v, |_, v| self.y().scale(v));
+    }
+
+    /// A scaled energy in the data's units: y²/x³ for the bending energy, y² for the parametric one.
+    pub(crate) fn energy_out(self, fairness: crate::energy::Fairness, energy: f64) -> f64 {
+        let y = PowerOfTwo::new(self.ey);
+        let mut value = y.scale(energy);
+        if fairness == crate::energy::Fairness::Bending {
+            // Alternate the factors so that only a result out of range leaves the range.
+            let x = PowerOfTwo::new(-self.ex);
+            value = x.scale(value);
+            value = y.scale(value);
+            return x.scale(x.scale(value));
+        }
+        y.scale(value)
+    }
+}
+
+/// As many numbers, made on all threads where there are many.
+pub(crate) fn numbers(n: usize, of: impl Fn(usize) -> f64 + Sync) -> Vec<f64> {
+    if n < 2 * PART {
+        (0..n).map(of).collect()
+    } else {
+        (0..n).into_par_iter().with_min_len(PART).map(&of).collect()
+    }
+}
+
+/// A copy.
+pub(crate) fn copy(values: &[f64]) -> Vec<f64> {
+    if values.len() < 2 * PART { values.to_vec() } else { numbers(values.len(), |i| values[i]) }
+}
+
+/// The first entry with a property (of its index and value).
+pub(crate) fn first(values: &[f64], property: impl Fn(usize, f64) -> bool + Sync) -> Option<usize> {
+    // Every one is looked at: a loop that may end early is not done several numbers at once.
+    let any = |(k, part): (usize, &[f64])| {
+        let start = k * PART;
+        part.iter().enumerate().fold(false, |any, (i, v)| any | property(start + i, *v))
+    };
+    let found = if values.len() < 2 * PART {
+        any((0, values))
+    } else {
+        values.par_chunks(PART).enumerate().any(any)
+    };
+    if found { (0..values.len()).find(|&i| property(i, values[i])) } else { None }
+}
+
+/// `of` every part of `0..n`, in order; on all threads where there are many.
+pub(crate) fn parts<T: Send>(n: usize, of: impl Fn(Range<usize>) -> T + Sync) -> Vec<T> {
+    let part = |k: usize| of(k * PART..n.min((k + 1) * PART));
+    let count = n.div_ceil(PART);
+    if n < 2 * PART {
+        (0..count).map(part).collect()
+    } else {
+        (0..count).into_par_iter().map(part).collect()
+    }
+}
+
+/// Every number replaced (by its index and value), on all threads where there are many.
+pub(crate) fn each(values: &mut [f64], by: impl Fn(usize, f64) -> f64 + Sync) {
+    let replace = |(k, part): (usize, &mut [f64])| {
+        let start = k * PART;
+        part.iter_mut().enumerate().for_each(|(i, v)| *v = by(start + i, *v));
+    };
+    if values.len() < 2 * PART {
+        replace((0, values));
+    } else {
+        values.par_chunks_mut(PART).enumerate().for_each(replace);
+    }
+}
+
+/// Spacings and secants of checked data in scaled units.
 #[derive(Debug, Clone)]
 pub(crate) struct Data {
     /// hᵢ = xᵢ₊₁ − xᵢ, scaled.
@@ -47,27 +164,22 @@ pub(crate) struct Data {
 impl Data {
     /// Check the data and take their differences. O(N).
     pub(crate) fn new(x: &[f64], y: &[f64]) -> Result<Self, MonotoneError> {
-        check(x, y)?;
-        let n = x.len() - 1;
-        let ex = exponent((x[n] / n as f64) - (x[0] / n as f64));
-        let step = y.windows(2).fold(0.0f64, |a, w| a.max((w[1] - w[0]).abs()));
-        let ey = if step > 0.0 { exponent(step) } else { 0 };
-        let (to_x, to_y) = (PowerOfTwo::new(-ex), PowerOfTwo::new(-ey));
-        let mut h = Vec::with_capacity(n);
-        let mut delta = Vec::with_capacity(n);
-        for (a, b) in x.windows(2).zip(y.windows(2)) {
-            let spacing = to_x.scale(a[1] - a[0]);
-            h.push(spacing);
-            delta.push(to_y.scale(b[1] - b[0]) / spacing);
-        }
-        if let Some(index) = delta.iter().position(|d| !(d.abs() < f64::MAX)) {
-            return Err(out_of_range("secant slope", "y", index, y[index]));
+        let units = Units::of(x, y)?;
+        let (to_x, to_y) = (PowerOfTwo::new(-units.ex), PowerOfTwo::new(-units.ey));
+        let h = numbers(x.len() - 1, |i| to_x.scale(x[i + 1] - x[i]));
+        let delta = numbers(h.len(), |i| to_y.scale(y[i + 1] - y[i]) / h[i]);
+        if let Some(i) = first(&delta, |_, d| !(d.abs() < f64::MAX)) {
+            return Err(out_of_range("secant slope", "y", i, y[i]));
         }
         // A spacing far below the mean one may vanish in scaled units.
-        if let Some(index) = h.iter().position(|h| !(*h > 0.0)) {
-            return Err(out_of_range("spacing relative to the mean spacing", "x", index, x[index]));
+        if let Some(i) = first(&h, |_, h| !(h > 0.0)) {
+            return Err(out_of_range("spacing relative to the mean spacing", "x", i, x[i]));
         }
-        Ok(Self { h, delta, ex, ey })
+        Ok(Self { h, delta, ex: units.ex, ey: units.ey })
+    }
+
+    pub(crate) fn units(&self) -> Units {
+        Units { ex: self.ex, ey: self.ey }
     }
 
     /// Number of segments.
@@ -77,50 +189,20 @@ impl Data {
 
     /// Refuse data whose second derivatives would not fit: the programs work with Δ/h and its square.
     pub(crate) fn check_curvature(&self, y: &[f64]) -> Result<(), MonotoneError> {
-        for (i, (h, delta)) in self.h.iter().zip(&self.delta).enumerate() {
-            let fits = delta.abs() < ROOM && delta.abs() < ROOM * h && 1.0 < ROOM * h && *h < ROOM;
-            if !fits {
-                return Err(out_of_range("second derivative", "y", i, y[i]));
-            }
+        let beyond = |i: usize, h: f64| {
+            let size = self.delta[i].abs();
+            !((size < ROOM) & (size < ROOM * h) & (1.0 < ROOM * h) & (h < ROOM))
+        };
+        match first(&self.h, beyond) {
+            Some(i) => Err(out_of_range("second derivative", "y", i, y[i])),
+            None => Ok(()),
         }
-        Ok(())
-    }
-
-    /// Slopes in scaled units to those of the data.
-    pub(crate) fn slopes_out(&self, d: &[f64]) -> Vec<f64> {
-        let unit = PowerOfTwo::new(self.ey - self.ex);
-        d.iter().map(|d| unit.scale(*d)).collect()
-    }
-
-    /// Second derivatives in scaled units to those of the data.
-    pub(crate) fn seconds_out(&self, s: &[f64]) -> Vec<f64> {
-        let (a, b) = (PowerOfTwo::new(self.ey - self.ex), PowerOfTwo::new(-self.ex));
-        s.iter().map(|s| b.scale(a.scale(*s))).collect()
     }
 
     /// Slopes in the data's units to scaled ones.
     pub(crate) fn slopes_in(&self, d: &[f64]) -> Vec<f64> {
         let unit = PowerOfTwo::new(self.ex - self.ey);
         d.iter().map(|d| unit.scale(*d)).collect()
-    }
-
-    /// A scaled energy in the data's units: y²/x³ for the bending energy, y² for the parametric one.
-    pub(crate) fn energy_out(&self, fairness: crate::energy::Fairness, energy: f64) -> f64 {
-        let y = PowerOfTwo::new(self.ey);
-        let mut value = y.scale(energy);
-        if fairness == crate::energy::Fairness::Bending {
-            // Alternate the factors so that only a result out of range leaves the range.
-            let x = PowerOfTwo::new(-self.ex);
-            value = x.scale(value);
-            value = y.scale(value);
-            return x.scale(x.scale(value));
-        }
-        y.scale(value)
-    }
-
-    /// A scaled difference of y in the data's units.
-    pub(crate) fn y_unit(&self) -> PowerOfTwo {
-        PowerOfTwo::new(self.ey)
     }
 }
 
@@ -133,33 +215,96 @@ pub(crate) fn out_of_range(
     MonotoneError::OutOfRange { quantity, argument, index, value }
 }
 
-/// Finite, x strictly increasing, at least two points, equal lengths, spreads that fit.
-fn check(x: &[f64], y: &[f64]) -> Result<(), MonotoneError> {
+/// Finite, x strictly increasing, at least two points, equal lengths, spreads that fit; the largest step of y.
+fn check(x: &[f64], y: &[f64]) -> Result<f64, MonotoneError> {
     if x.len() < 2 {
         return Err(MonotoneError::TooFew { argument: "x", found: x.len(), needed: 2 });
     }
     if y.len() != x.len() {
         return Err(MonotoneError::Length { argument: "y", found: y.len(), expected: x.len() });
     }
+    let n = x.len() - 1;
+    let part = |k: usize| {
+        let end = x.len().min((k + 1) * PART + 1);
+        Survey::of(&x[k * PART..end], &y[k * PART..end])
+    };
+    let survey = if n < 2 * PART {
+        Survey::of(x, y)
+    } else {
+        let parts = (0..n.div_ceil(PART)).into_par_iter().map(part);
+        parts.reduce(Survey::default, Survey::and)
+    };
+    // Four times the spread: room for the coefficients around the values.
+    let fits = |low: f64, high: f64| high / 4.0 - low / 4.0 < f64::MAX / 16.0;
+    let spread = (x[n] - x[0]).is_finite() && fits(survey.low, survey.high);
+    if survey.finite && survey.increasing && spread {
+        return Ok(survey.step);
+    }
+    // Something is wrong: what and where.
     check_finite("x", x)?;
     check_finite("y", y)?;
     if let Some(i) = x.windows(2).position(|w| !(w[0] < w[1])) {
         return Err(MonotoneError::NotIncreasing { index: i + 1, value: x[i + 1], previous: x[i] });
     }
-    let last = x.len() - 1;
-    if !(x[last] - x[0]).is_finite() {
-        return Err(out_of_range("spread", "x", last, x[last]));
+    if !(x[n] - x[0]).is_finite() {
+        return Err(out_of_range("spread", "x", n, x[n]));
     }
     let (mut low, mut high) = (y[0], y[0]);
-    for (i, &value) in y.iter().enumerate() {
-        low = low.min(value);
-        high = high.max(value);
-        // Four times the spread: room for the coefficients around the values.
-        if !((high / 4.0 - low / 4.0) < f64::MAX / 16.0) {
-            return Err(out_of_range("spread", "y", i, value));
+    let beyond = y.iter().position(|&value| {
+        (low, high) = (low.min(value), high.max(value));
+        !fits(low, high)
+    });
+    match beyond {
+        Some(i) => Err(out_of_range("spread", "y", i, y[i])),
+        None => Ok(survey.step),
+    }
+}
+
+/// What one pass over (a part of) the data tells.
+#[derive(Debug, Clone, Copy)]
+struct Survey {
+    finite: bool,
+    increasing: bool,
+    low: f64,
+    high: f64,
+    step: f64,
+}
+
+impl Default for Survey {
+    fn default() -> Self {
+        let (low, high) = (f64::INFINITY, f64::NEG_INFINITY);
+        Self { finite: true, increasing: true, low, high, step: 0.0 }
+    }
+}
+
+impl Survey {
+    fn of(x: &[f64], y: &[f64]) -> Self {
+        let mut s = Self::default();
+        // The sum of v·0 is NaN exactly when an entry is not finite. Plain selections throughout: they are done
+        // several numbers at once, where `f64::min` and searches are not.
+        let zero: f64 = x.iter().zip(y).fold(0.0, |sum, (x, y)| sum + (x * 0.0 + y * 0.0));
+        s.finite = zero == 0.0;
+        s.increasing = x.windows(2).fold(true, |all, w| all & (w[0] < w[1]));
+        for &v in y {
+            s.low = if v < s.low { v } else { s.low };
+            s.high = if v > s.high { v } else { s.high };
+        }
+        for w in y.windows(2) {
+            let step = (w[1] - w[0]).abs();
+            s.step = if step > s.step { step } else { s.step };
+        }
+        s
+    }
+
+    fn and(self, other: Self) -> Self {
+        Self {
+            finite: self.finite && other.finite,
+            increasing: self.increasing && other.increasing,
+            low: self.low.min(other.low),
+            high: self.high.max(other.high),
+            step: self.step.max(other.step),
         }
     }
-    Ok(())
 }
 
 /// Every entry finite, or the first that is not.

@@ -34,10 +34,13 @@
 
 mod bernstein;
 pub mod bezier_like;
+mod calculus;
 mod data;
 mod energy;
 mod error;
+mod evaluate;
 mod extrapolation;
+mod integrals;
 mod inverse;
 mod locate;
 mod many;
@@ -54,6 +57,7 @@ mod reference;
 pub mod second_opinion;
 mod slopes;
 mod spline;
+mod stretches;
 mod windows;
 
 #[cfg(doctest)]

@@ -1,9 +1,15 @@
-//! Finding the segment of a query: a table of equal buckets over the knots, built at the first large request.
+//! Finding the segments of queries: a table of equal buckets over the knots, built at the first large request.
 
 use std::sync::OnceLock;
 
+/// Queries whose segments are found before any of them is evaluated: what the loops load depends on no branch of the
+/// iteration before, so that cache misses overlap.
+pub(crate) const TILE: usize = 64;
 /// Knots from which a table pays; below it a binary search stays in the first cache lines.
-const SMALL: usize = 24;
+const SMALL: usize = 8;
+/// Knots compared without a branch after the one that the table names: nearly always enough on knots that are not too
+/// uneven.
+const COMPARED: usize = 3;
 
 /// Finds segments among increasing knots. O(1) expected on knots that are not too uneven, O(log N) at worst.
 #[derive(Debug, Default)]
@@ -22,32 +28,44 @@ impl Clone for Locator {
 struct Table {
     /// `start[b]`: the last segment that begins in a bucket before b (0 if none).
     start: Vec<u32>,
+    origin: f64,
     scale: f64,
+    last: f64,
 }
 
 impl Table {
     fn new(x: &[f64]) -> Option<Self> {
         let n = x.len() - 1;
-        if n < SMALL || n > u32::MAX as usize - 2 {
+        if n < SMALL || n > u32::MAX as usize / 2 {
             return None;
         }
         let scale = n as f64 / (x[n] - x[0]);
         if !scale.is_finite() || scale == 0.0 {
             return None;
         }
-        let mut start = vec![0u32; n + 2];
-        let bucket = |v: f64| (((v - x[0]) * scale) as usize).min(n);
+        let mut table = Self { start: vec![0u32; n + 2], origin: x[0], scale, last: n as f64 };
         let mut b = 0;
         for (i, &knot) in x[..n].iter().enumerate() {
-            let own = bucket(knot);
+            let own = table.bucket(knot) as usize;
             // Buckets up to the knot's own see only earlier segments.
             while b <= own {
-                start[b] = i.saturating_sub(1) as u32;
+                table.start[b] = i.saturating_sub(1) as u32;
                 b += 1;
             }
         }
-        start[b..].fill(n as u32 - 1);
-        Some(Self { start, scale })
+        table.start[b..].fill(n as u32 - 1);
+        Some(table)
+    }
+
+    /// The bucket of a place, from 0 to n; of NaN 0. All that matters is that it does not fall as v grows.
+    #[inline(always)]
+    fn bucket(&self, v: f64) -> u32 {
+        /// Adding it leaves the nearest integer in the lowest bits: conversions have no such fast form.
+        const MAGIC: f64 = 4_503_599_627_370_496.0;
+        let p = (v - self.origin) * self.scale;
+        let p = if p > 0.0 { p } else { 0.0 };
+        let p = if p < self.last { p } else { self.last };
+        (p + MAGIC).to_bits() as u32
     }
 }
 
@@ -74,47 +92,81 @@ impl Searcher<'_> {
     /// The segment i with `x[i] ≤ v < x[i+1]`, the first for v before the knots (and NaN), the last for v after.
     #[inline]
     pub(crate) fn find(&self, v: f64) -> usize {
-        let x = self.x;
-        let (mut lo, mut hi) = match self.table {
+        match self.table {
             Some(table) => {
-                // A negative or NaN product casts to 0, one beyond the range saturates.
-                let b = (((v - x[0]) * table.scale) as usize).min(table.start.len() - 2);
-                (table.start[b] as usize, table.start[b + 1] as usize + 1)
+                let b = table.bucket(v) as usize;
+                self.within(table.start[b] as usize, table.start[b + 1] as usize, v)
             }
-            None => (0, x.len() - 2),
-        };
-        // Invariant: the segment is in lo..=hi.
-        hi = hi.min(x.len() - 2);
-        if hi - lo <= 8 {
-            while lo < hi && v >= x[lo + 1] {
-                lo += 1;
-            }
-            return lo;
+            None => self.within(0, self.x.len() - 2, v),
         }
-        while lo < hi {
-            let mid = (lo + hi).div_ceil(2);
-            if v >= x[mid] {
-                lo = mid;
-            } else {
-                hi = mid - 1;
-            }
+    }
+
+    /// [`Self::find`] where the segment is known to be in `lo..=hi`.
+    #[inline]
+    fn within(&self, mut lo: usize, hi: usize, v: f64) -> usize {
+        let mut count = hi - lo + 1;
+        while count > 1 {
+            let half = count / 2;
+            // A selection, not a branch: which way it goes cannot be predicted.
+            lo = if v >= self.x[lo + half] { lo + half } else { lo };
+            count -= half;
         }
         lo
     }
 
-    /// As [`Self::find`], looking at and after `hint` first: sorted queries cost a comparison or two.
+    /// The segments of at most [`TILE`] queries; the places of `out` after the last are left as they are. Where the
+    /// table does not help and the queries are `sorted`, each is looked for from the one before on.
     #[inline]
-    pub(crate) fn find_near(&self, v: f64, hint: usize) -> usize {
-        let x = self.x;
-        if v >= x[hint] {
-            if v < x[hint + 1] {
-                return hint;
+    pub(crate) fn tile(&self, queries: &[f64], sorted: bool, out: &mut [usize; TILE]) {
+        let last = self.x.len() - 1;
+        let Some(table) = self.table else {
+            let mut hint = 0;
+            for (i, &v) in out.iter_mut().zip(queries) {
+                hint = if sorted { self.near(hint, v) } else { self.find(v) };
+                *i = hint;
             }
-            if hint + 2 < x.len() && v < x[hint + 2] {
-                return hint + 1;
-            }
+            return;
+        };
+        let mut buckets = [0u32; TILE];
+        for (b, &v) in buckets.iter_mut().zip(queries) {
+            *b = table.bucket(v);
         }
-        self.find(v)
+        let mut hint = 0;
+        for ((i, &b), &v) in out.iter_mut().zip(&buckets).zip(queries) {
+            let lo = table.start[b as usize] as usize;
+            let mut passed = 0;
+            for k in 1..=COMPARED {
+                passed += usize::from(v >= self.x[(lo + k).min(last)]);
+            }
+            *i = (lo + passed).min(last - 1);
+            if passed == COMPARED {
+                let hi = (table.start[b as usize + 1] as usize).max(*i);
+                *i = if sorted && hi - *i > TILE && v >= self.x[hint] {
+                    self.near((*i).max(hint), v)
+                } else {
+                    self.within(*i, hi, v)
+                };
+            }
+            hint = *i;
+        }
+    }
+
+    /// The segment of v, looked for from `hint` on in steps that double, as sorted queries have it; by search where
+    /// it lies before.
+    #[inline]
+    pub(crate) fn near(&self, hint: usize, v: f64) -> usize {
+        let (x, last) = (self.x, self.x.len() - 2);
+        if !(v >= x[hint]) {
+            return self.find(v);
+        }
+        let (mut lo, mut step) = (hint, 1);
+        loop {
+            let hi = (lo + step).min(last);
+            if hi == lo || v < x[hi] {
+                return self.within(lo, hi.max(lo + 1) - 1, v);
+            }
+            (lo, step) = (hi, 2 * step);
+        }
     }
 }
 
@@ -149,8 +201,31 @@ mod tests {
                         };
                         let expected = x[1..n].iter().take_while(|knot| v >= **knot).count();
                         assert_eq!(search.find(v), expected, "n {n} v {v}");
-                        hint = search.find_near(v, hint);
+                        hint = search.near(hint, v);
                         assert_eq!(hint, expected);
+                    }
+                    // Tiles, sorted and not, ends and NaN among them.
+                    for sorted in [false, true] {
+                        let mut q: Vec<f64> = (0..TILE - 3)
+                            .map(|k| {
+                                if k % 2 == 0 {
+                                    x[(next() * x.len() as f64) as usize]
+                                } else {
+                                    x[0] + (x[n] - x[0]) * (1.2 * next() - 0.1)
+                                }
+                            })
+                            .collect();
+                        q.extend([f64::NEG_INFINITY, f64::INFINITY]);
+                        if sorted {
+                            q.sort_by(f64::total_cmp);
+                        } else {
+                            q.push(f64::NAN);
+                        }
+                        let mut out = [0; TILE];
+                        search.tile(&q, sorted, &mut out);
+                        for (&v, &i) in q.iter().zip(&out) {
+                            assert_eq!(i, search.find(v), "n {n} v {v} sorted {sorted}");
+                        }
                     }
                     assert_eq!(search.find(f64::NAN), 0);
                     assert_eq!(search.find(f64::INFINITY), n - 1);

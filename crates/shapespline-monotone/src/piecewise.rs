@@ -2,7 +2,12 @@
 
 use crate::bernstein;
 use crate::extrapolation::Extrapolation;
-use crate::locate::Locator;
+use crate::integrals::{Lazy, Pieces, whole};
+use crate::locate::{Locator, TILE};
+use rayon::prelude::*;
+
+/// Queries that one thread works through at least.
+const PARALLEL: usize = 1 << 14;
 
 /// A piecewise polynomial `Σₖ cₖ Bₖⁿ((x − xᵢ)/hᵢ)` on increasing knots.
 ///
@@ -18,6 +23,7 @@ pub struct PiecewisePolynomial {
     c: Vec<f64>,
     extrapolate: Extrapolation,
     locator: Locator,
+    sums: Lazy,
 }
 
 /// The stored form.
@@ -51,7 +57,7 @@ impl TryFrom<Parts> for PiecewisePolynomial {
 
 impl PiecewisePolynomial {
     pub(crate) fn new(x: Vec<f64>, degree: usize, c: Vec<f64>, extrapolate: Extrapolation) -> Self {
-        Self { x, degree, c, extrapolate, locator: Locator::default() }
+        Self { x, degree, c, extrapolate, locator: Locator::default(), sums: Lazy::default() }
     }
 
     /// The knots.
@@ -104,11 +110,20 @@ impl PiecewisePolynomial {
         out: &mut [f64],
     ) {
         let mode = extrapolate.unwrap_or(self.extrapolate);
-        let search = self.locator.searcher(&self.x, queries.len() > 64);
-        let mut hint = 0;
-        for (value, &x) in out.iter_mut().zip(queries) {
-            hint = search.find_near(x, hint);
-            *value = self.at(hint, x, nu, mode);
+        let n = queries.len().min(out.len());
+        let search = self.locator.searcher(&self.x, n > TILE);
+        let work = |(q, out): (&[f64], &mut [f64])| {
+            let mut segments = [0; TILE];
+            search.tile(q, q.is_sorted(), &mut segments);
+            for ((value, &x), &i) in out.iter_mut().zip(q).zip(&segments) {
+                *value = self.at(i, x, nu, mode);
+            }
+        };
+        if n > PARALLEL {
+            let tiles = queries[..n].par_chunks(TILE).zip(out[..n].par_chunks_mut(TILE));
+            tiles.with_min_len(PARALLEL / TILE).for_each(work);
+        } else {
+            queries[..n].chunks(TILE).zip(out[..n].chunks_mut(TILE)).for_each(work);
         }
     }
 
@@ -183,54 +198,19 @@ impl PiecewisePolynomial {
         out
     }
 
-    /// `∫ₐᵇ f dx`, also for a > b and outside the knots as the extrapolation says. O(segments between).
+    /// `∫ₐᵇ f dx`, also for a > b and outside the knots as the extrapolation says. O(log N), after a
+    /// first call of O(N).
     #[must_use]
     pub fn integrate(&self, a: f64, b: f64, extrapolate: Option<Extrapolation>) -> f64 {
-        if a > b {
-            return -self.integrate(b, a, extrapolate);
-        }
-        if a.is_nan() || b.is_nan() {
-            return f64::NAN;
-        }
-        let mode = extrapolate.unwrap_or(self.extrapolate);
-        let last = self.x.len() - 1;
-        let (first, end) = (self.x[0], self.x[last]);
-        let mut sum = 0.0;
-        // Outside: the antiderivative of the end piece alone.
-        for (from, to, i) in [(a, b.min(first), 0), (a.max(end), b, last - 1)] {
-            if from < to {
-                let knots = vec![self.x[i], self.x[i + 1]];
-                let piece = Self::new(knots, self.degree, self.piece(i).to_vec(), mode);
-                let whole = piece.antiderivative(1);
-                sum += whole.evaluate(to, 0, None) - whole.evaluate(from, 0, None);
-            }
-        }
-        let (from, to) = (a.max(first), b.min(end));
-        if from < to {
-            let search = self.locator.searcher(&self.x, false);
-            for i in search.find(from)..=search.find(to) {
-                let h = self.h(i);
-                let step = h / (self.degree + 1) as f64;
-                let mut c = vec![0.0];
-                let mut run = 0.0;
-                for v in self.piece(i) {
-                    run += v * step;
-                    c.push(run);
-                }
-                let upper = if to >= self.x[i + 1] {
-                    run
-                } else {
-                    bernstein::value(&c, (to - self.x[i]) / h)
-                };
-                let lower = if from <= self.x[i] {
-                    0.0
-                } else {
-                    bernstein::value(&c, (from - self.x[i]) / h)
-                };
-                sum += upper - lower;
-            }
-        }
-        sum
+        let n = self.x.len() - 1;
+        let pieces = Pieces {
+            x: &self.x,
+            search: self.locator.searcher(&self.x, false),
+            degree: self.degree,
+            piece: |i: usize| self.piece(i),
+            sums: || self.sums.get(n, |i| whole(self.piece(i), self.h(i))),
+        };
+        pieces.integrate(a, b, extrapolate.unwrap_or(self.extrapolate))
     }
 
     /// All x with f(x) = y, increasing, each once; where f equals y on a whole segment its start followed by NaN, as

@@ -6,16 +6,16 @@
 //! the reflection. At a turn of the data dᵢ = 0 and sᵢ has the turn's sign; at a flat segment dᵢ = sᵢ = 0.
 
 use crate::MonotoneError;
-use crate::data::{Data, out_of_range};
+use crate::data::{Data, each, out_of_range};
 use crate::energy::{Fairness, is_flat};
-use crate::slopes::sign;
 use shapespline_banded::box_qp::{BoxQpSolution, TridiagonalBoxQp, solve};
+use std::ops::Range;
 
 /// Bounds are pulled in by this factor so that the derivative's coefficients stay non-negative after rounding.
 const INSIDE: f64 = 1.0 - 4.0 * f64::EPSILON;
 
 /// The program's arrays, in scaled units.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub(crate) struct Program {
     pub(crate) diagonal: Vec<f64>,
     pub(crate) off_diagonal: Vec<f64>,
@@ -24,11 +24,24 @@ pub(crate) struct Program {
     pub(crate) upper: Vec<f64>,
 }
 
+/// The larger of two numbers, as a plain selection.
+#[inline(always)]
+fn larger(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
+}
+
+/// The smaller of two numbers, as a plain selection.
+#[inline(always)]
+fn smaller(a: f64, b: f64) -> f64 {
+    if a < b { a } else { b }
+}
+
 /// The interval one segment leaves to the second derivative at one of its ends, for an increasing segment seen
 /// from its left end: `[−4d/h, 6(Δ−d)/h]`. `d`, `delta` ≥ 0.
 #[inline]
 fn interval(h: f64, delta: f64, d: f64) -> (f64, f64) {
-    (-4.0 * (d / h) * INSIDE, 6.0 * ((delta - d) / h))
+    let inverse = 1.0 / h;
+    (-4.0 * (d * inverse) * INSIDE, 6.0 * ((delta - d) * inverse))
 }
 
 /// Case 2 of the paper: a slope for which (17) has no non-negative solution is lowered to
@@ -36,32 +49,51 @@ fn interval(h: f64, delta: f64, d: f64) -> (f64, f64) {
 pub(crate) fn admissible_slopes(data: &Data, d: &mut [f64]) {
     let (h, delta) = (&data.h, &data.delta);
     let n = data.len();
-    for i in 0..=n {
+    each(d, |i, d| {
         let (l, r) = (i.max(1) - 1, i.min(n - 1));
         if is_flat(delta[l]) || is_flat(delta[r]) {
-            d[i] = 0.0;
-        } else if l != r && d[i] != 0.0 {
-            let sum = h[l] + h[r];
-            let cap = delta[l] * (h[r] / sum) + delta[r] * (h[l] / sum);
-            if d[i].abs() > cap.abs() {
-                d[i] = cap;
-            }
+            return 0.0;
         }
-    }
+        if l == r || d == 0.0 {
+            return d;
+        }
+        let sum = h[l] + h[r];
+        let cap = delta[l] * (h[r] / sum) + delta[r] * (h[l] / sum);
+        if d.abs() > cap.abs() { cap } else { d }
+    });
 }
 
 impl Program {
-    /// Assemble. O(N).
+    /// Assemble the whole program. O(N).
     pub(crate) fn new(data: &Data, d: &[f64], fairness: Fairness) -> Result<Self, MonotoneError> {
-        let (h, delta) = (&data.h, &data.delta);
-        let n = data.len();
-        let mut p = Self {
-            diagonal: vec![0.0; n + 1],
-            off_diagonal: Vec::with_capacity(n),
-            linear: vec![0.0; n + 1],
-            lower: vec![f64::NEG_INFINITY; n + 1],
-            upper: vec![f64::INFINITY; n + 1],
-        };
+        let mut program = Self::default();
+        program.fill(data, d, fairness, 0..data.len())?;
+        Ok(program)
+    }
+
+    /// Assemble the program of some segments alone, in place. O(segments).
+    pub(crate) fn fill(
+        &mut self,
+        data: &Data,
+        d: &[f64],
+        fairness: Fairness,
+        segments: Range<usize>,
+    ) -> Result<(), MonotoneError> {
+        let (h, delta) = (&data.h[segments.clone()], &data.delta[segments.clone()]);
+        let d = &d[segments.start..=segments.end];
+        let n = h.len();
+        for (array, room) in [
+            (&mut self.diagonal, n + 1),
+            (&mut self.off_diagonal, n),
+            (&mut self.linear, n + 1),
+            (&mut self.lower, n + 1),
+            (&mut self.upper, n + 1),
+        ] {
+            array.clear();
+            array.reserve_exact(room);
+        }
+        // A node gets its entries from the segments on both sides: what the one on the left leaves is carried along.
+        let mut carry = (0.0, 0.0, f64::NEG_INFINITY, f64::INFINITY);
         for i in 0..n {
             let (h, delta, d0, d1) = (h[i], delta[i], d[i], d[i + 1]);
             // Energy (20) in s, times 35 and the fairness weight: h³ between the two energies.
@@ -70,37 +102,39 @@ impl Program {
                 Fairness::Parametric => h * h * h,
             };
             if !(weight * h > 1e-300 && weight * h < 1e300) {
-                return Err(out_of_range("parametric energy", "x", i, h));
+                return Err(out_of_range("parametric energy", "x", segments.start + i, h));
             }
-            p.off_diagonal.push(weight * h);
-            p.diagonal[i] += 6.0 * weight * h;
-            p.diagonal[i + 1] += 6.0 * weight * h;
-            p.linear[i] += weight * (22.0 * (d0 - delta) + 8.0 * (d1 - delta));
-            p.linear[i + 1] -= weight * (8.0 * (d0 - delta) + 22.0 * (d1 - delta));
-            if is_flat(delta) {
-                for k in [i, i + 1] {
-                    (p.lower[k], p.upper[k]) = (0.0, 0.0);
-                }
-                continue;
-            }
-            let up = sign(delta);
-            let mut meet = |k: usize, (low, high): (f64, f64), reflect: bool| {
-                let (low, high) = if reflect { (-high, -low) } else { (low, high) };
-                p.lower[k] = p.lower[k].max(low);
-                p.upper[k] = p.upper[k].min(high);
+            let (left, right) = if is_flat(delta) {
+                ((0.0, 0.0), (0.0, 0.0))
+            } else {
+                let (slope0, slope1, size) = (d0.abs(), d1.abs(), delta.abs());
+                let (left, right) = (interval(h, size, slope0), interval(h, size, slope1));
+                // The right end is the left end of the segment traversed backwards with y reflected as well.
+                let turned = |(low, high): (f64, f64)| (-high, -low);
+                if delta < 0.0 { (turned(left), right) } else { (left, turned(right)) }
             };
-            // The right end is the left end of the segment traversed backwards with y reflected as well.
-            meet(i, interval(h, delta.abs(), d0.abs()), up < 0.0);
-            meet(i + 1, interval(h, delta.abs(), d1.abs()), up > 0.0);
+            let meets = (larger(carry.2, left.0), smaller(carry.3, left.1));
+            let (e0, e1) = (d0 - delta, d1 - delta);
+            self.off_diagonal.push(weight * h);
+            self.diagonal.push(carry.0 + 6.0 * weight * h);
+            self.linear.push(carry.1 + weight * (22.0 * e0 + 8.0 * e1));
+            self.bound(meets);
+            carry = (6.0 * weight * h, -(weight * (8.0 * e0 + 22.0 * e1)), right.0, right.1);
         }
-        for (low, high) in p.lower.iter_mut().zip(&mut p.upper) {
-            // Case 2 and the turns make the two bounds meet exactly; rounding must not make the box empty.
-            if *low > *high {
-                let meet = if low.abs() < high.abs() { *low } else { *high };
-                (*low, *high) = (meet, meet);
-            }
-        }
-        Ok(p)
+        self.diagonal.push(carry.0);
+        self.linear.push(carry.1);
+        self.bound((carry.2, carry.3));
+        Ok(())
+    }
+
+    /// Append a node's bounds (zeros without a sign). Case 2 and the turns make the two meet exactly, and a flat beside fixes both at zero;
+    /// rounding must not make the box empty.
+    #[inline]
+    fn bound(&mut self, (low, high): (f64, f64)) {
+        let met = if low.abs() < high.abs() { low } else { high };
+        let empty = low > high;
+        self.lower.push(if empty { met } else { low } + 0.0);
+        self.upper.push(if empty { met } else { high } + 0.0);
     }
 
     pub(crate) fn view(&self) -> TridiagonalBoxQp<'_> {

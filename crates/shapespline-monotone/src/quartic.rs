@@ -2,12 +2,15 @@
 
 use crate::MonotoneError;
 use crate::Slopes;
-use crate::data::{Data, check_finite};
+use crate::data::{Data, PART, check_finite, copy, first};
 use crate::extrapolation::Extrapolation;
 use crate::slopes;
 use crate::spline::{Kind, MonotoneSpline};
+use rayon::prelude::*;
 use std::ops::Deref;
 
+/// Segments whose λ are computed together.
+const LANES: usize = 32;
 /// λ is lowered by this much below the largest admissible one, so that the derivative stays strictly non-negative
 /// after rounding.
 const INSIDE: f64 = 1.0 - 1e-12;
@@ -112,29 +115,26 @@ impl MonotoneQuartic {
                 }
             }
         }
-        let mut scale = Vec::with_capacity(n);
-        let mut e = Vec::with_capacity(n);
-        for i in 0..n {
-            let delta = data.delta[i];
-            if delta == 0.0 {
-                e.push(0.0);
-                scale.push(1.0);
-                continue;
+        let (mut scale, mut e) = (vec![0.0; n], vec![0.0; n]);
+        let part = |(k, (scale, e)): (usize, (&mut [f64], &mut [f64]))| {
+            let start = k * PART;
+            match &options.shape {
+                Shape::Uniform(a) => segments(&data, &d, start, |_| (*a, *a), scale, e),
+                Shape::Segments { .. } => {
+                    segments(&data, &d, start, |i| options.shape.at(i), scale, e);
+                }
             }
-            let (alpha, beta) = options.shape.at(i);
-            // In units of the secant everything is of order one.
-            let inverse = 1.0 / delta;
-            let exact = inverse.is_finite() && inverse != 0.0;
-            let over = |d: f64| if exact { d * inverse } else { d / delta };
-            let (m0, m1) = (over(d[i]), over(d[i + 1]));
-            let full = 2.0 / 3.0 * (alpha * m0 - beta * m1);
-            let lambda = largest_scale(m0, m1, full);
-            scale.push(lambda);
-            e.push(lambda * full * (delta * data.h[i]));
+        };
+        if n < 2 * PART {
+            part((0, (&mut scale, &mut e)));
+        } else {
+            let parts = scale.par_chunks_mut(PART).zip(e.par_chunks_mut(PART));
+            parts.enumerate().for_each(part);
         }
-        let spline =
-            MonotoneSpline::quartic(&data, x.to_vec(), y.to_vec(), &d, e, options.extrapolate);
-        if let Some(i) = spline.d.iter().position(|d| !d.is_finite()) {
+        let units = data.units();
+        drop(data);
+        let spline = MonotoneSpline::quartic(units, copy(x), copy(y), d, e, options.extrapolate);
+        if let Some(i) = first(&spline.d, |_, d| !d.is_finite()) {
             return Err(crate::data::out_of_range("secant slope", "y", i, y[i]));
         }
         Ok(Self { spline, shape: options.shape.clone(), scale })
@@ -177,9 +177,15 @@ impl MonotoneQuartic {
             let a = 3.0 * (2.0 * (dy - m0) + e);
             let b = 3.0 * (m0 - m1 - 2.0 * e);
             let c = 3.0 * (2.0 * (m1 - dy) + e);
+            let size = a.abs().max(b.abs()).max(c.abs());
+            if size == 0.0 {
+                continue;
+            }
+            // In units of the largest: squares that overflow have opposite signs.
+            let (a, b, c) = (a / size, b / size, c / size);
             let mean =
                 (6.0 * (a * a + c * c) + 6.0 * b * (a + c) + 2.0 * a * c + 4.0 * b * b) / 30.0;
-            sum += mean / h / h / h;
+            sum += mean * (size / h) * (size / h) / h;
         }
         sum
     }
@@ -204,65 +210,93 @@ fn check_shape(argument: &'static str, values: &[f64]) -> Result<(), MonotoneErr
     }
 }
 
+/// λ and e (scaled) of the segments from `start` on.
+#[inline(always)]
+fn segments(
+    data: &Data,
+    d: &[f64],
+    start: usize,
+    shape: impl Fn(usize) -> (f64, f64),
+    scale: &mut [f64],
+    e: &mut [f64],
+) {
+    let n = scale.len().min(e.len());
+    let (h, delta) = (&data.h[start..start + n], &data.delta[start..start + n]);
+    let (left, right) = (&d[start..start + n], &d[start + 1..=start + n]);
+    // Nothing but arithmetic and selections, from one small array to another: done for several segments at once.
+    for from in (0..n).step_by(LANES) {
+        let lanes = LANES.min(n - from);
+        let (mut m0, mut m1, mut full) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
+        for j in 0..lanes {
+            let secant = delta[from + j];
+            let (alpha, beta) = shape(start + from + j);
+            // In units of the secant everything is of order one.
+            let secant = if secant == 0.0 { 1.0 } else { secant };
+            (m0[j], m1[j]) = (left[from + j] / secant, right[from + j] / secant);
+            full[j] = 2.0 / 3.0 * (alpha * m0[j] - beta * m1[j]);
+        }
+        // Those whose conditions (12), (13) fail, listed without a branch: which they are cannot be predicted.
+        let (mut failing, mut count) = ([0; LANES], 0);
+        for j in 0..lanes {
+            failing[count] = j;
+            count += usize::from(!keeps(m0[j], m1[j], full[j]));
+        }
+        let mut lambda = [1.0; LANES];
+        for &j in &failing[..count] {
+            lambda[j] = largest_scale(m0[j], m1[j], full[j]);
+        }
+        // Flat segments have slopes and e of zero, and a λ of one, as they are.
+        for j in 0..lanes {
+            scale[from + j] = lambda[j];
+            e[from + j] = lambda[j] * full[j] * (delta[from + j] * h[from + j]);
+        }
+    }
+}
+
+/// Conditions (12), (13): whether the full e leaves both inner coefficients of the derivative non-negative. Both
+/// cannot fail: their sum is 4 − a − d ≥ 0.
+#[inline(always)]
+fn keeps(a: f64, d: f64, full: f64) -> bool {
+    (2.0 - a + full >= 0.0) & (2.0 - d - full >= 0.0)
+}
+
 /// The largest λ ∈ [0, 1] for which the derivative (4) with `e = λ full` is non-negative on [0, 1]; `a`, `d` are
 /// the end slopes over the secant, in [0, 2].
 ///
 /// The admissible e form an interval around 0 (non-negativity is an intersection of half-planes), so the boundary in
-/// one direction is a single point. It lies between the e at which the failing Bernstein coefficient reaches 0
-/// (still admissible) and the full e (known not to be); in that bracket Φ of theorem 1 changes sign exactly once.
-/// Roots of Φ outside the bracket, where B and C are positive and Φ means nothing, cannot be taken.
+/// one direction is a single point: there the derivative has a double root at some σ = t/(1−t), and with the
+/// coefficients a, 3B, 3C, d in powers of s it is `d(s − σ)²(s + a/(dσ²))`. Hence `3C = a/σ² − 2dσ`, and B + C =
+/// 4 − a − d = K leaves `dσ⁴ − 2dσ³ − 3Kσ² − 2aσ + a = 0`. Its signs + − − − + allow two positive roots, and at 1 it is
+/// negative: one root below 1 (where the other coefficient fails, by symmetry the same case) and one above, which is
+/// wanted. There the quartic rises and is convex, so that Newton's iteration finds it and no other. Φ of theorem 1 is
+/// the discriminant of the same cubic, with roots that mean nothing besides.
+#[inline(always)]
 fn largest_scale(a: f64, d: f64, full: f64) -> f64 {
-    let (b, c) = (2.0 - a + full, 2.0 - d - full);
-    if b >= 0.0 && c >= 0.0 {
-        // Conditions (12), (13). Both cannot fail: B + C = 4 − a − d ≥ 0.
-        return 1.0;
-    }
+    let kept = keeps(a, d, full);
     // By symmetry (t ↔ 1 − t) let it be C that fails, at e > 0.
-    let (a, d, full) = if c < 0.0 { (a, d, full) } else { (d, a, -full) };
-    let room = 2.0 - d;
-    // Φ over A D-free scaling; negative or zero: non-negative derivative (theorem 1).
-    let phi = |e: f64| {
-        let (b, c) = (2.0 - a + e, room - e);
-        3.0 * (b * c) * (b * c) + 6.0 * (a * d) * (b * c)
-            - 4.0 * (a * c * c * c + b * b * b * d)
-            - (a * d) * (a * d)
-    };
-    if a == 0.0 && d == 0.0 {
-        return 1.0;
+    let turn = 2.0 - a + full < 0.0;
+    let (near, far) = (if turn { d } else { a }, if turn { a } else { d });
+    let full = if turn { -full } else { full };
+    let room = 2.0 - far;
+    let k = 4.0 - a - d;
+    let k = if k > 0.0 { 3.0 * k } else { 0.0 };
+    let (a, d) = (near, far);
+    // σ(σ − 2) = (3K + 2a/σ − a/σ²)/d ≤ (3K + a)/d, for the root is at least 2; and once more with the bound inserted:
+    // now within 0.5 %, whatever a and d, and three of Newton's steps make that less than rounding.
+    let inverse = 1.0 / d;
+    let bound = 1.0 / (1.0 + (1.0 + (k + a) * inverse).sqrt());
+    let mut sigma = 1.0 + (1.0 + (k + a * bound * (2.0 - bound)) * inverse).sqrt();
+    for _ in 0..3 {
+        let value = ((d * sigma - 2.0 * d) * sigma - k) * (sigma * sigma) - a * (2.0 * sigma - 1.0);
+        let slope = ((4.0 * d * sigma - 6.0 * d) * sigma - 2.0 * k) * sigma - 2.0 * a;
+        sigma -= value / slope;
     }
-    // Case 3 (D = 0): C ≥ 0 itself is necessary.
-    if d == 0.0 {
-        return (room / full * INSIDE).min(1.0);
-    }
-    if phi(full) <= 0.0 {
-        return 1.0;
-    }
-    let (mut lo, mut hi) = (room, full);
-    let (mut f_lo, mut f_hi) = (phi(lo), phi(hi));
-    // Φ(lo) ≤ 0 < Φ(hi): false position with halved weights (Illinois), bisection every fourth step.
-    let mut side = 0;
-    for k in 0..100 {
-        if hi - lo <= 1e-14 * hi {
-            break;
-        }
-        let secant = lo + (hi - lo) * (f_lo / (f_lo - f_hi));
-        let e = if k % 4 != 3 && secant > lo && secant < hi { secant } else { 0.5 * (lo + hi) };
-        let f = phi(e);
-        if f <= 0.0 {
-            (lo, f_lo) = (e, f);
-            if side == 1 {
-                f_hi *= 0.5;
-            }
-            side = 1;
-        } else {
-            (hi, f_hi) = (e, f);
-            if side == 2 {
-                f_lo *= 0.5;
-            }
-            side = 2;
-        }
-    }
-    (lo * INSIDE / full).min(1.0)
+    let least = room + (2.0 * d * sigma - a / (sigma * sigma)) / 3.0;
+    // Case 3 (D = 0): C ≥ 0 itself is necessary. So it is for a D that is nothing beside the other numbers.
+    let least = if d < 1e-300 { room } else { least };
+    let lambda = least * INSIDE / full;
+    let lambda = if lambda < 1.0 { lambda } else { 1.0 };
+    if kept { 1.0 } else { lambda }
 }
 
 #[cfg(test)]

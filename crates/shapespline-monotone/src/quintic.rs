@@ -1,14 +1,15 @@
 //! The C² monotone quintic: the paper's program, and the fairest over slopes as well.
 
 use crate::MonotoneError;
-use crate::data::{Data, check_finite};
+use crate::data::{Data, check_finite, copy, first, parts};
 use crate::energy::{self, Fairness, is_flat};
 use crate::extrapolation::Extrapolation;
 use crate::optimal::coefficients;
-use crate::program::{Program, admissible_slopes};
+use crate::program::admissible_slopes;
 use crate::quartic_form::certified_nonnegative;
 use crate::slopes;
 use crate::spline::{Kind, MonotoneSpline};
+use crate::stretches;
 use crate::windows;
 use std::ops::Deref;
 
@@ -125,21 +126,22 @@ impl MonotoneQuintic {
             }
             Slopes::Optimal => fairest(&data, fairness)?,
         };
+        let units = data.units();
         let bending = energy::total(&data, Fairness::Bending, &d, &s);
-        let bending_energy = data.energy_out(Fairness::Bending, bending);
+        let bending_energy = units.energy_out(Fairness::Bending, bending);
         diagnostics.energy = match fairness {
             Fairness::Bending => bending_energy,
             Fairness::Parametric => {
-                data.energy_out(fairness, energy::total(&data, fairness, &d, &s))
+                units.energy_out(fairness, energy::total(&data, fairness, &d, &s))
             }
         };
         diagnostics.certified = certified(&data, &d, &s);
-        let spline =
-            MonotoneSpline::quintic(&data, x.to_vec(), y.to_vec(), &d, &s, options.extrapolate);
+        drop(data);
+        let spline = MonotoneSpline::quintic(units, copy(x), copy(y), d, s, options.extrapolate);
         // A second derivative beyond double precision: refuse rather than hand out infinities.
         if let Kind::Quintic { s } = &spline.kind {
-            let overflow = |v: &f64| !v.is_finite();
-            if let Some(i) = s.iter().position(overflow).or(spline.d.iter().position(overflow)) {
+            let overflow = |_, v: f64| !v.is_finite();
+            if let Some(i) = first(s, overflow).or(first(&spline.d, overflow)) {
                 return Err(crate::data::out_of_range("second derivative", "y", i, y[i]));
             }
         }
@@ -200,7 +202,7 @@ type Fit = (Vec<f64>, Vec<f64>, Diagnostics);
 /// The paper's program for given slopes.
 fn paper(data: &Data, mut d: Vec<f64>, fairness: Fairness) -> Result<Fit, MonotoneError> {
     admissible_slopes(data, &mut d);
-    let solution = Program::new(data, &d, fairness)?.solve()?;
+    let solution = stretches::solve(data, &d, fairness)?;
     let diagnostics = Diagnostics {
         solver: Solver::ActiveSet,
         iterations: solution.iterations,
@@ -242,12 +244,12 @@ fn fairest(data: &Data, fairness: Fairness) -> Result<Fit, MonotoneError> {
 /// Whether every segment's derivative is non-negative in its direction, by its Bernstein coefficients; a rounding
 /// error of the coefficients themselves (they are sums of numbers of the size of the secant) is allowed for.
 fn certified(data: &Data, d: &[f64], s: &[f64]) -> bool {
-    (0..data.len()).all(|i| {
-        let (h, delta) = (data.h[i], data.delta[i]);
-        is_flat(delta)
-            || certified_nonnegative(
-                &coefficients(h, delta, [d[i], s[i]], [d[i + 1], s[i + 1]]),
-                16.0 * f64::EPSILON,
-            )
-    })
+    let all = parts(data.len(), |mut part| {
+        part.all(|i| {
+            let (h, delta) = (data.h[i], data.delta[i]);
+            let c = || coefficients(h, delta, [d[i], s[i]], [d[i + 1], s[i + 1]]);
+            is_flat(delta) || certified_nonnegative(&c(), 16.0 * f64::EPSILON)
+        })
+    });
+    all.iter().all(|certified| *certified)
 }

@@ -10,8 +10,8 @@
 pub(crate) struct Record {
     pub(crate) x0: f64,
     pub(crate) h: f64,
-    pub(crate) y0: f64,
-    pub(crate) y1: f64,
+    /// At the two ends.
+    pub(crate) y: [f64; 2],
     pub(crate) q: [f64; 4],
 }
 
@@ -25,7 +25,7 @@ impl Record {
         let (dp, dr) = (0.5 * (p - 0.5 * k[0]), 0.5 * (0.5 * k[1] - r));
         let (even, odd) = (0.25 * (dr - dp), 0.25 * (dr + dp));
         let q = [0.5 * (p + r) - even, 0.75 * (r - p) - odd, even, odd - 0.25 * (r - p)];
-        Self { x0, h: x1 - x0, y0, y1, q }
+        Self { x0, h: x1 - x0, y: [y0, y1], q }
     }
 
     /// The quartic (3) from end slopes `m = h y'` and `e = ⅔(αm₀ − βm₁)`.
@@ -35,7 +35,7 @@ impl Record {
         let (p, r) = (dy - m[0], m[1] - dy);
         let middle = -0.25 * (m[0] - m[1] + 1.5 * e);
         let q = [middle, 0.5 * (r - p), 0.5 * (p + r) - middle, 0.0];
-        Self { x0, h: x1 - x0, y0, y1, q }
+        Self { x0, h: x1 - x0, y: [y0, y1], q }
     }
 
     #[inline]
@@ -44,23 +44,51 @@ impl Record {
     }
 
     /// The polynomial at local t, inside or outside [0, 1].
-    #[inline]
+    #[inline(always)]
     pub(crate) fn raw(&self, t: f64) -> f64 {
-        let z = 2.0 * t - 1.0;
-        let q = ((self.q[3] * z + self.q[2]) * z + self.q[1]) * z + self.q[0];
-        let dy = self.y1 - self.y0;
-        let (end, tau) = if t < 0.5 { (self.y0, t) } else { (self.y1, t - 1.0) };
+        let (z, dy) = (2.0 * t - 1.0, self.y[1] - self.y[0]);
+        let [q0, q1, q2, q3] = self.q;
+        let q = ((q3 * z + q2) * z + q1) * z + q0;
+        let (end, tau) = if t > 0.5 { (self.y[1], t - 1.0) } else { (self.y[0], t) };
         end + (dy * tau + (t * (t - 1.0)) * q)
     }
 
+    /// [`Self::raw`] for t in [0, 1], the same to the last bit.
+    #[inline(always)]
+    fn inner(&self, t: f64) -> f64 {
+        /// Adding it rounds to integers, and leaves them in the lowest bits.
+        const MAGIC: f64 = 4_503_599_627_370_496.0;
+        let (z, dy) = (2.0 * t - 1.0, self.y[1] - self.y[0]);
+        let [q0, q1, q2, q3] = self.q;
+        let q = ((q3 * z + q2) * z + q1) * z + q0;
+        // The nearer end by rounding, not by a comparison that becomes a branch: it could not be predicted.
+        let rounded = t + MAGIC;
+        let end = self.y[(rounded.to_bits() & 1) as usize];
+        end + (dy * (t - (rounded - MAGIC)) + (t * (t - 1.0)) * q)
+    }
+
     /// The value at local t in [0, 1], kept between the two data values.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn value(&self, t: f64) -> f64 {
-        let v = self.raw(t);
-        let (lo, hi) = if self.y0 < self.y1 { (self.y0, self.y1) } else { (self.y1, self.y0) };
+        self.between(self.inner(t))
+    }
+
+    #[inline(always)]
+    fn between(&self, v: f64) -> f64 {
+        let [a, b] = self.y;
+        let (lo, hi) = (if a < b { a } else { b }, if a < b { b } else { a });
         // Not `clamp`: it panics on NaN bounds, and a comparison passes NaN queries through.
         let v = if v < lo { lo } else { v };
         if v > hi { hi } else { v }
+    }
+
+    /// The values at many places of the segment.
+    #[inline(always)]
+    pub(crate) fn values(&self, x: &[f64], out: &mut [f64]) {
+        // Here the ends are loaded once and selected from, for several places at once.
+        for (x, out) in x.iter().zip(out) {
+            *out = self.between(self.raw(self.local(*x)));
+        }
     }
 
     /// `f(t) − y₀` when t ≤ ½, `f(t) − y₁` otherwise, and df/dt.
@@ -70,7 +98,7 @@ impl Record {
         let [q0, q1, q2, q3] = self.q;
         let q = ((q3 * z + q2) * z + q1) * z + q0;
         let dq = (3.0 * q3 * z + 2.0 * q2) * z + q1;
-        let dy = self.y1 - self.y0;
+        let dy = self.y[1] - self.y[0];
         let tau = if t < 0.5 { t } else { t - 1.0 };
         let bubble = t * (t - 1.0);
         (dy * tau + bubble * q, dy + z * q + 2.0 * bubble * dq)

@@ -1,4 +1,5 @@
-//! The programs of this crate through NLopt (feature `nlopt`): a second opinion, not a faster way.
+//! The paper's program through NLopt (feature `nlopt`): a second opinion, not a faster way. On the program with optimal
+//! slopes NLopt's opinion is asked in Python: `tests/test_monotone_nlopt.py`.
 //!
 //! The crate's own solvers exploit the tridiagonal structure; NLopt's SLSQP treats the same programs as dense smooth
 //! problems, O(N³) an iteration. Meant for N up to a hundred or so, in tests and comparisons.
@@ -70,6 +71,53 @@ pub fn paper_program(
     // Running out of steps or of rounding is an answer too: the energy tells how good it is.
     let _ = solver.optimize(&mut u);
     let s = place(&u);
-    let energy = data.energy_out(fairness, energy::total(&data, fairness, &d, &s));
-    Ok((data.seconds_out(&s), energy))
+    let energy = data.units().energy_out(fairness, energy::total(&data, fairness, &d, &s));
+    let mut s = s;
+    data.units().seconds_out(&mut s);
+    Ok((s, energy))
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use crate::{MonotoneQuintic, QuinticOptions, Slopes};
+
+    fn random(next: &mut impl FnMut() -> f64, case: usize) -> (Vec<f64>, Vec<f64>) {
+        let n = 3 + (next() * 12.0) as usize;
+        let (mut x, mut y) = (vec![0.0], vec![0.0]);
+        for k in 0..n {
+            x.push(x[k] + (0.05 + next()) * 10f64.powf(next()));
+            let turn = if case % 3 == 2 && next() < 0.3 { -1.0 } else { 1.0 };
+            let flat = case % 3 == 1 && next() < 0.2;
+            y.push(if flat { y[k] } else { y[k] + turn * (0.01 + next()) * 10f64.powf(next()) });
+        }
+        (x, y)
+    }
+
+    fn generator() -> impl FnMut() -> f64 {
+        let mut state = 5u64;
+        move || {
+            state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+            (state >> 11) as f64 / (1u64 << 53) as f64
+        }
+    }
+
+    #[test]
+    fn the_box_program_on_random_data() {
+        let mut next = generator();
+        for case in 0..60 {
+            let (x, y) = random(&mut next, case);
+            for fairness in [Fairness::Bending, Fairness::Parametric] {
+                let options = QuinticOptions {
+                    slopes: Slopes::FritschButland,
+                    fairness,
+                    ..QuinticOptions::default()
+                };
+                let ours = MonotoneQuintic::new(&x, &y, &options).unwrap().diagnostics().energy;
+                let (_, theirs) = paper_program(&x, &y, fairness).unwrap();
+                assert!((ours - theirs).abs() <= 1e-8 * theirs, "case {case}: {ours} {theirs}");
+            }
+        }
+    }
 }

@@ -3,7 +3,7 @@
 //! Everything is in signed, scaled units; decreasing data are the reflection of increasing ones because every
 //! formula here is odd in Δ.
 
-use crate::data::Data;
+use crate::data::{Data, numbers};
 
 /// The sign of a segment or of the zero slope: −1, 0, 1.
 #[inline]
@@ -54,14 +54,13 @@ pub(crate) fn limit(d: f64, a: f64, b: f64) -> f64 {
 pub(crate) fn fritsch_butland(data: &Data) -> Vec<f64> {
     let (h, delta) = (&data.h, &data.delta);
     let n = data.len();
-    let mut d = Vec::with_capacity(n + 1);
     if n == 1 {
         // Two points: the line.
         return vec![delta[0]; 2];
     }
-    d.push(end(h[0], h[1], delta[0], delta[1]));
-    d.extend(delta.windows(2).map(|w| harmonic(w[0], w[1])));
-    d.push(end(h[n - 1], h[n - 2], delta[n - 1], delta[n - 2]));
+    let mut d = numbers(n + 1, |i| harmonic(delta[i.max(1) - 1], delta[i.min(n - 1)]));
+    d[0] = end(h[0], h[1], delta[0], delta[1]);
+    d[n] = end(h[n - 1], h[n - 2], delta[n - 1], delta[n - 2]);
     d
 }
 
@@ -84,7 +83,8 @@ mod tests {
     #[test]
     fn the_paper_s_formulas() {
         let data = Data::new(&[0.0, 1.0, 3.0, 4.0], &[0.0, 1.0, 2.0, 8.0]).unwrap();
-        let d = data.slopes_out(&fritsch_butland(&data));
+        let mut d = fritsch_butland(&data);
+        data.units().slopes_out(&mut d);
         // Printed end formula: d0* = (1 + 2)·1 − 2·(2/3) = 5/3; the far end is beyond 2Δ and clamped.
         assert!((d[0] - 5.0 / 3.0).abs() < 1e-15);
         assert!((d[1] - 2.0 * 0.5 / 1.5).abs() < 1e-15);

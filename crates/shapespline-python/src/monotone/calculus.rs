@@ -75,7 +75,7 @@ impl PiecewisePolynomial {
     /// Returns
     /// -------
     /// float or numpy.ndarray
-    ///     One number a column. Cost O(n).
+    ///     One number a column. Cost O(log n) after a first call of O(n).
     ///
     /// Examples
     /// --------
@@ -90,7 +90,7 @@ impl PiecewisePolynomial {
         #[pyo3(from_py_with = options::b)] b: f64,
         #[pyo3(from_py_with = options::extrapolate)] extrapolate: Option<Extrapolation>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let values = self.fits.map(py, |c| c.integrate(a, b, extrapolate));
+        let values = self.fits.map(py, |_, c| c.integrate(a, b, extrapolate));
         self.each(py, values)
     }
 
@@ -162,7 +162,7 @@ impl PiecewisePolynomial {
         y: f64,
         mode: Option<Extrapolation>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let found = self.fits.map(py, |c: Column<'_>| c.solve(y, mode));
+        let found = self.fits.map(py, |_, c: Column<'_>| c.solve(y, mode));
         if self.layout.is_one() {
             let only = found.into_iter().next().unwrap_or_default();
             return Ok(PyArray1::from_vec(py, only).into_any());

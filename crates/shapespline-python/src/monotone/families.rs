@@ -1,27 +1,20 @@
 //! The constructors of the quartic and the quintic.
 
-use std::{ops::ControlFlow, sync::Arc};
+use std::sync::Arc;
 
 use pyo3::{PyClass, PyClassInitializer, exceptions::PyValueError, prelude::*};
-use rayon::prelude::*;
 use shapespline::monotone::{
     Extrapolation, Fairness, MonotoneError, QuarticOptions, QuinticOptions, Shape, Slopes,
 };
 
 use super::{
-    fits::{Fits, PARALLEL},
+    fits::{Fits, fit_all},
     function::PiecewisePolynomial,
     layout::Layout,
     options::{self, SlopesOption, column_error},
     spline::MonotoneSpline,
 };
-use crate::{
-    input::{Array, array},
-    work::interruptible,
-};
-
-/// Columns that are fitted between two looks for Ctrl-C.
-const BATCH: usize = 4096;
+use crate::input::{Array, array};
 
 /// Data along an axis.
 struct Data<'py> {
@@ -86,29 +79,9 @@ impl<'py> Data<'py> {
                 (_, Some(d)) => Slopes::Given(d[k * n..(k + 1) * n].to_vec()),
                 _ => Slopes::FritschButland,
             };
-            fit(x, &y[k * n..(k + 1) * n], slopes).map_err(|error| (k, error))
+            fit(x, &y[k * n..(k + 1) * n], slopes)
         };
-        let columns = self.layout.columns();
-        let fits = if y.len() < PARALLEL && columns == 1 {
-            py.detach(|| one(0).map(|f| vec![f]))
-        } else {
-            interruptible(py, y.len(), |monitor| {
-                let mut fits = Vec::with_capacity(columns);
-                for start in (0..columns).step_by(BATCH) {
-                    let batch = start..columns.min(start + BATCH);
-                    let some: Result<Vec<F>, _> = if y.len() < PARALLEL || columns == 1 {
-                        batch.map(&one).collect()
-                    } else {
-                        batch.into_par_iter().map(&one).collect()
-                    };
-                    fits.extend(some?);
-                    if monitor() == ControlFlow::Break(()) {
-                        break;
-                    }
-                }
-                Ok(fits)
-            })?
-        };
+        let fits = fit_all(py, y.len(), self.layout.columns(), one)?;
         fits.map_err(|(k, error)| column_error(&error, &self.layout, k))
     }
 }

@@ -1,13 +1,19 @@
 //! One function a column, of any of the three kinds.
 
-use pyo3::prelude::*;
+use std::ops::ControlFlow;
+
+use pyo3::{exceptions::PyKeyboardInterrupt, prelude::*};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use shapespline::monotone::{
-    Extrapolation, MonotoneQuartic, MonotoneQuintic, MonotoneSpline, PiecewisePolynomial,
+    Extrapolation, MonotoneError, MonotoneQuartic, MonotoneQuintic, MonotoneSpline,
+    PiecewisePolynomial,
 };
 
-use crate::{output::zeros, work::detached};
+use crate::{
+    output::{room, zeros},
+    work::{detached, interruptible_many},
+};
 
 /// From so many numbers on, columns are shared out over threads (the size from which `detached` has a pool).
 pub(crate) const PARALLEL: usize = 8192;
@@ -57,7 +63,24 @@ impl Column<'_> {
     pub(crate) fn evaluate(&self, x: f64, nu: usize, mode: Option<Extrapolation>) -> f64 {
         both!(self, f => f.evaluate(x, nu, mode))
     }
-    fn evaluate_into(&self, x: &[f64], nu: usize, mode: Option<Extrapolation>, out: &mut [f64]) {
+    /// Many values as a fresh vector.
+    fn evaluate_many(&self, x: &[f64], nu: usize, mode: Option<Extrapolation>) -> Vec<f64> {
+        match self {
+            Self::Spline(f) => f.evaluate_many(x, nu, mode),
+            Self::Pieces(f) => {
+                let mut out = vec![0.0; x.len()];
+                f.evaluate_into(x, nu, mode, &mut out);
+                out
+            }
+        }
+    }
+    pub(crate) fn evaluate_into(
+        &self,
+        x: &[f64],
+        nu: usize,
+        mode: Option<Extrapolation>,
+        out: &mut [f64],
+    ) {
         both!(self, f => f.evaluate_into(x, nu, mode, out));
     }
     fn derivative(&self, nu: usize) -> PiecewisePolynomial {
@@ -71,6 +94,36 @@ impl Column<'_> {
     }
     pub(crate) fn solve(&self, y: f64, mode: Option<Extrapolation>) -> Vec<f64> {
         both!(self, f => f.solve(y, mode))
+    }
+}
+
+/// `count` fits on `size` numbers, in parallel where there is much to do, with a look for Ctrl-C before each; or the
+/// error of one of them and which.
+pub(crate) fn fit_all<F: Send>(
+    py: Python<'_>,
+    size: usize,
+    count: usize,
+    one: impl Fn(usize) -> Result<F, MonotoneError> + Send + Sync,
+) -> PyResult<Result<Vec<F>, (usize, MonotoneError)>> {
+    let fit = |k: usize| one(k).map_err(|error| Some((k, error)));
+    let fits: Result<Vec<F>, _> = if size < PARALLEL {
+        py.detach(|| (0..count).map(fit).collect())
+    } else {
+        interruptible_many(py, |go_on| {
+            let fit = |k| if go_on() == ControlFlow::Break(()) { Err(None) } else { fit(k) };
+            if count == 1 {
+                // On this thread: what a long fit does itself in parallel finds the pool free.
+                fit(0).map(|f| vec![f])
+            } else {
+                (0..count).into_par_iter().map(fit).collect()
+            }
+        })?
+    };
+    match fits {
+        Ok(fits) => Ok(Ok(fits)),
+        Err(Some(error)) => Ok(Err(error)),
+        // Whoever asked to stop has been heard above.
+        Err(None) => Err(PyKeyboardInterrupt::new_err(())),
     }
 }
 
@@ -110,28 +163,60 @@ impl Fits {
         self.columns().map(|c| c.x().len()).sum()
     }
 
-    /// `work` on every column, in parallel where there is much of it.
+    /// `work` on every column (and its index), in parallel where there is much of it.
     pub(crate) fn map<T: Send>(
         &self,
         py: Python<'_>,
-        work: impl Fn(Column<'_>) -> T + Send + Sync,
+        work: impl Fn(usize, Column<'_>) -> T + Send + Sync,
     ) -> Vec<T> {
         let size = self.size();
         detached(py, size, || {
+            let one = |k| work(k, self.column(k));
             if size < PARALLEL || self.len() == 1 {
-                self.columns().map(&work).collect()
+                (0..self.len()).map(one).collect()
             } else {
-                (0..self.len()).into_par_iter().map(|k| work(self.column(k))).collect()
+                (0..self.len()).into_par_iter().map(one).collect()
             }
         })
     }
 
+    /// `work` of every column at its places `of(k)`, column after column; or the first column it fails on.
+    pub(crate) fn each_at<'q, E: Send>(
+        &self,
+        py: Python<'_>,
+        of: impl Fn(usize) -> &'q [f64] + Send + Sync,
+        work: impl Fn(Column<'_>, &[f64], &mut [f64]) -> Result<(), E> + Send + Sync,
+    ) -> PyResult<Result<Vec<f64>, (usize, E)>> {
+        let size = (0..self.len()).map(|k| of(k).len()).sum();
+        let mut out = zeros(size, 1)?;
+        let mut rest = &mut out[..];
+        let mut parts = Vec::with_capacity(self.len());
+        for k in 0..self.len() {
+            let part;
+            (part, rest) = rest.split_at_mut(of(k).len());
+            parts.push((k, part));
+        }
+        let done = detached(py, size, || {
+            let one = |(k, part): (usize, &mut [f64])| {
+                work(self.column(k), of(k), part).map_err(|e| (k, e))
+            };
+            // The first of the failures, whatever the order in which they come.
+            let failures: Vec<(usize, E)> = if size < PARALLEL || self.len() == 1 {
+                parts.into_iter().filter_map(|p| one(p).err()).collect()
+            } else {
+                parts.into_par_iter().filter_map(|p| one(p).err()).collect()
+            };
+            failures.into_iter().next().map_or(Ok(()), Err)
+        });
+        Ok(done.map(|()| out))
+    }
+
     pub(crate) fn derivative(&self, py: Python<'_>, nu: usize) -> Self {
-        Self::Pieces(self.map(py, |c| c.derivative(nu)))
+        Self::Pieces(self.map(py, |_, c| c.derivative(nu)))
     }
 
     pub(crate) fn antiderivative(&self, py: Python<'_>, nu: usize) -> Self {
-        Self::Pieces(self.map(py, |c| c.antiderivative(nu)))
+        Self::Pieces(self.map(py, |_, c| c.antiderivative(nu)))
     }
 
     /// Every column at the queries `of(k)`, column after column, each with `each` of them.
@@ -143,16 +228,19 @@ impl Fits {
         nu: usize,
         mode: Option<Extrapolation>,
     ) -> PyResult<Vec<f64>> {
-        let mut out = zeros(self.len(), each)?;
+        let size = room(self.len(), each)?;
+        if self.len() == 1 {
+            return Ok(detached(py, size, || self.column(0).evaluate_many(of(0), nu, mode)));
+        }
+        let mut out = vec![0.0; size];
         if out.is_empty() {
             return Ok(out);
         }
-        let size = out.len();
         detached(py, size, || {
             let work = |(k, row): (usize, &mut [f64])| {
                 self.column(k).evaluate_into(of(k), nu, mode, row);
             };
-            if size < PARALLEL || self.len() == 1 {
+            if size < PARALLEL {
                 out.chunks_mut(each).enumerate().for_each(work);
             } else {
                 out.par_chunks_mut(each).enumerate().for_each(work);

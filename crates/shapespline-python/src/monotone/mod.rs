@@ -23,13 +23,14 @@ pub(crate) fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<families::MonotoneQuartic>()?;
     module.add_class::<families::MonotoneQuintic>()?;
     module.add_class::<diagnostics::MonotoneDiagnostics>()?;
+    module.add_class::<rows::PiecewiseRows>()?;
     module.add_class::<rows::MonotoneRows>()?;
     module.add_function(wrap_pyfunction!(function::_function_from_bytes, module)?)?;
     module.add_function(wrap_pyfunction!(rows::_rows_from_bytes, module)?)?;
     module.add_function(wrap_pyfunction!(rows::fit_many_monotone, module)?)?;
     module.add_function(wrap_pyfunction!(bezier_like::bezier_like, module)?)?;
     document_call::<function::PiecewisePolynomial>(module.py())?;
-    document_call::<rows::MonotoneRows>(module.py())
+    document_call::<rows::PiecewiseRows>(module.py())
 }
 
 /// Makes calling an object a documented method: pyo3's slot would show `(*args, **kwargs)`.

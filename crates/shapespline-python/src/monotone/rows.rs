@@ -1,67 +1,221 @@
 //! Many data sets with their own x in one call: `fit_many_monotone`.
 
-use std::{ops::ControlFlow, sync::Arc};
+use std::sync::Arc;
 
 use pyo3::{
-    exceptions::{PyIndexError, PyValueError},
+    PyClassInitializer,
+    exceptions::{PyIndexError, PyTypeError, PyValueError},
     prelude::*,
     types::PyBytes,
 };
-use rayon::prelude::*;
 use shapespline::monotone::{
     self, Extrapolation, Fairness, MonotoneError, QuarticOptions, QuinticOptions, Shape, Slopes,
 };
 
 use super::{
     diagnostics::MonotoneDiagnostics,
-    fits::{Fits, PARALLEL},
+    fits::{Column, Fits, fit_all},
     function::{PiecewisePolynomial, damaged, read},
     layout::Layout,
     options::{self, SlopesOption, monotone_error},
     spline::{diagnostics, energies},
 };
 use crate::{
-    input::{Array, Query, array, count, kind, text},
+    input::{Array, Numbers, Offsets, Query, array, kind, numbers, text},
     options::choose,
     output::{FloatArray, shaped},
-    work::{detached, interruptible},
+    work::detached,
 };
 
-/// Rows that are fitted between two looks for Ctrl-C.
-const BATCH: usize = 4096;
-
-/// Monotone interpolants of many rows, each with its own x: what `fit_many_monotone` gives.
+/// Functions of many rows, each with its own knots: the base of `MonotoneRows`.
 ///
-/// A sequence: ``len(f)`` rows, ``f[k]`` the interpolant of one. A call evaluates row by row.
+/// Not made directly: derivatives and antiderivatives of what `fit_many_monotone` gives are of this
+/// class. A sequence: ``len(f)`` rows, ``f[k]`` the function of one. Immutable; can be pickled, copied
+/// and shared between threads.
 ///
 /// Examples
 /// --------
 /// >>> import shapespline as ss
 /// >>> f = ss.fit_many_monotone([[0, 1, 2], [0, 2, 4]], [[0, 1, 2], [0, 1, 2]])
-/// >>> len(f), f(1.0), f[1](1.0)
-/// (2, array([1. , 0.5]), 0.5)
-#[pyclass(module = "shapespline", frozen, sequence)]
-pub(crate) struct MonotoneRows {
+/// >>> f.derivative()(1.0)
+/// array([1. , 0.5])
+#[pyclass(module = "shapespline", frozen, sequence, subclass)]
+pub(crate) struct PiecewiseRows {
     fits: Arc<Fits>,
 }
 
+impl PiecewiseRows {
+    /// The object of the class that the fits are of.
+    fn into_python(self, py: Python<'_>) -> PyResult<Py<PyAny>> {
+        let pieces = matches!(*self.fits, Fits::Pieces(_));
+        let base = PyClassInitializer::from(self);
+        Ok(if pieces {
+            Py::new(py, base)?.into_any()
+        } else {
+            Py::new(py, base.add_subclass(MonotoneRows))?.into_any()
+        })
+    }
+
+    /// `work` on every row at its places, as an array in the arrangement of the places.
+    fn each_at<'py>(
+        &self,
+        py: Python<'py>,
+        places: &Places<'_>,
+        work: impl Fn(Column<'_>, &[f64], &mut [f64]) -> Result<(), MonotoneError> + Send + Sync,
+    ) -> PyResult<FloatArray<'py>> {
+        let rows = self.fits.len();
+        let (values, arrangement) = (places.values(), &places.arrangement);
+        let found = self.fits.each_at(py, |k| arrangement.row(values, k), work)?;
+        let found = found.map_err(|(row, source)| {
+            monotone_error(&MonotoneError::InRow { row, source: Box::new(source) })
+        })?;
+        match arrangement {
+            Arrangement::One => shaped(py, found, &[rows]),
+            Arrangement::Same => shaped(py, found, &[rows, values.len()]),
+            Arrangement::Each(n) => shaped(py, found, &[rows, *n]),
+            Arrangement::Ragged(_) => shaped(py, found, &[values.len()]),
+        }
+    }
+}
+
+/// Places for every row, as they come in.
+struct Places<'py> {
+    query: Query<'py>,
+    one: [f64; 1],
+    arrangement: Arrangement,
+}
+
+enum Arrangement {
+    /// One number for all rows.
+    One,
+    /// The same numbers for all rows.
+    Same,
+    /// So many numbers for each row.
+    Each(usize),
+    /// Its own numbers for each row: where they begin.
+    Ragged(Vec<usize>),
+}
+
+impl<'py> Places<'py> {
+    fn of(
+        argument: &str,
+        object: &Bound<'py, PyAny>,
+        offsets: Option<Offsets>,
+        rows: usize,
+    ) -> PyResult<Self> {
+        let query = Query::named(argument, object)?;
+        let (shape, text, length) = match &query {
+            Query::One(_) => (Vec::new(), "()".to_owned(), 1),
+            Query::Many(x) => (x.shape().to_vec(), x.shape_text(), x.values().len()),
+        };
+        let arrangement = match (&shape[..], offsets) {
+            ([_], Some(Offsets(bounds))) => {
+                check_offsets(&bounds, length)?;
+                if bounds.len() != rows + 1 {
+                    return Err(PyValueError::new_err(format!(
+                        "offsets must have {} entries for {rows} rows, got {}",
+                        rows + 1,
+                        bounds.len()
+                    )));
+                }
+                Arrangement::Ragged(bounds)
+            }
+            (_, Some(_)) => {
+                return Err(PyValueError::new_err(format!(
+                    "with offsets, {argument} must have one axis; got shape {text}"
+                )));
+            }
+            ([], None) => Arrangement::One,
+            ([_], None) => Arrangement::Same,
+            ([m, n], None) if *m == rows => Arrangement::Each(*n),
+            _ => {
+                return Err(PyValueError::new_err(format!(
+                    "{argument} must be a number, have one axis, or be of shape ({rows}, n): a row \
+                     for each; got shape {text}"
+                )));
+            }
+        };
+        let one = [if let Query::One(x) = query { x } else { f64::NAN }];
+        Ok(Self { query, one, arrangement })
+    }
+
+    fn values(&self) -> &[f64] {
+        match &self.query {
+            Query::One(_) => &self.one,
+            Query::Many(x) => x.values(),
+        }
+    }
+}
+
+impl Arrangement {
+    /// Those of all the places that are row k's.
+    fn row<'a>(&self, values: &'a [f64], k: usize) -> &'a [f64] {
+        match self {
+            Self::One | Self::Same => values,
+            Self::Each(n) => &values[k * n..(k + 1) * n],
+            Self::Ragged(bounds) => &values[bounds[k]..bounds[k + 1]],
+        }
+    }
+}
+
+/// The end of an integral: a number, or one a row.
+fn end(argument: &str, object: &Bound<'_, PyAny>, rows: usize) -> PyResult<Vec<f64>> {
+    let values = match numbers(argument, object)? {
+        Numbers::One(value) => vec![value; rows],
+        Numbers::Many(values) if values.len() == rows => values,
+        Numbers::Many(values) => {
+            return Err(PyValueError::new_err(format!(
+                "{argument} must be a number or one for each of {rows} rows, got {}",
+                values.len()
+            )));
+        }
+    };
+    match values.iter().position(|v| !v.is_finite()) {
+        None => Ok(values),
+        Some(row) => Err(PyValueError::new_err(format!(
+            "{argument} must be finite, got {} for row {row}",
+            values[row]
+        ))),
+    }
+}
+
 #[pymethods]
-impl MonotoneRows {
+impl PiecewiseRows {
+    #[new]
+    fn new() -> PyResult<Self> {
+        Err(PyTypeError::new_err(
+            "PiecewiseRows is the base of MonotoneRows: call fit_many_monotone, or take a derivative \
+             of what it gives",
+        ))
+    }
+
     /// Evaluate every row, or a derivative.
     ///
     /// Parameters
     /// ----------
     /// x : array_like
     ///     A number or one axis: the same places for every row. Two axes: row k of ``x`` for row k.
+    ///     With ``offsets`` one axis: the places of all rows one after another.
     /// nu : int
     ///     Order of the derivative.
     /// extrapolate : {None, True, False, "linear", "clip"}
     ///     As for a call of `MonotoneQuintic`.
+    /// offsets : array_like of int, shape (rows + 1,), optional
+    ///     Row k is evaluated at ``x[offsets[k]:offsets[k + 1]]``.
     ///
     /// Returns
     /// -------
-    /// numpy.ndarray, shape (rows,) or (rows, places)
-    ///     One row a row. Many run on all threads.
+    /// numpy.ndarray, shape (rows,), (rows, places) or, with offsets, that of x
+    ///     One row a row.
+    ///
+    /// Raises
+    /// ------
+    /// ValueError, TypeError
+    ///     If ``x`` or ``offsets`` do not fit the rows, or an argument is of a wrong kind.
+    ///
+    /// Notes
+    /// -----
+    /// Cost O(log n) a place; many run on all threads.
     ///
     /// Examples
     /// --------
@@ -70,40 +224,118 @@ impl MonotoneRows {
     /// >>> f([[0.5, 1.5], [1, 3]])
     /// array([[0.5, 1.5],
     ///        [0.5, 1.5]])
-    #[pyo3(signature = (x, nu=0, extrapolate=None))]
+    /// >>> f([0.5, 1, 2, 3], offsets=[0, 1, 4])
+    /// array([0.5, 0.5, 1. , 1.5])
+    #[pyo3(signature = (x, nu=0, extrapolate=None, *, offsets=None))]
     fn _call<'py>(
         &self,
         py: Python<'py>,
         x: &Bound<'py, PyAny>,
         #[pyo3(from_py_with = options::nu)] nu: usize,
         #[pyo3(from_py_with = options::extrapolate)] extrapolate: Option<Extrapolation>,
+        offsets: Option<Offsets>,
+    ) -> PyResult<FloatArray<'py>> {
+        let places = Places::of("x", x, offsets, self.fits.len())?;
+        self.each_at(py, &places, |f, x, out| {
+            f.evaluate_into(x, nu, extrapolate, out);
+            Ok(())
+        })
+    }
+
+    /// The derivatives of all rows as functions.
+    ///
+    /// Parameters
+    /// ----------
+    /// nu : int
+    ///     Their order.
+    ///
+    /// Returns
+    /// -------
+    /// PiecewiseRows
+    ///     Row by row what `PiecewisePolynomial.derivative` gives. Cost O(total).
+    ///
+    /// Examples
+    /// --------
+    /// >>> import shapespline as ss
+    /// >>> f = ss.fit_many_monotone([[0, 1, 2], [0, 2, 4]], [[0, 1, 2], [0, 1, 2]])
+    /// >>> f.derivative()([0.5, 1.5])
+    /// array([[1. , 1. ],
+    ///        [0.5, 0.5]])
+    #[pyo3(signature = (nu=1))]
+    fn derivative(
+        &self,
+        py: Python<'_>,
+        #[pyo3(from_py_with = options::nu)] nu: usize,
+    ) -> PyResult<Py<PyAny>> {
+        // One beyond the degree all are zero.
+        let nu = nu.min(self.fits.column(0).degree() + 1);
+        Self { fits: Arc::new(self.fits.derivative(py, nu)) }.into_python(py)
+    }
+
+    /// Antiderivatives of all rows as functions: zero at their first knots.
+    ///
+    /// Parameters
+    /// ----------
+    /// nu : int
+    ///     How often to integrate; at most 100.
+    ///
+    /// Returns
+    /// -------
+    /// PiecewiseRows
+    ///     Row by row what `PiecewisePolynomial.antiderivative` gives. Cost O(total).
+    ///
+    /// Examples
+    /// --------
+    /// >>> import shapespline as ss
+    /// >>> f = ss.fit_many_monotone([[0, 1, 2], [0, 2, 4]], [[0, 1, 2], [0, 1, 2]])
+    /// >>> f.antiderivative()(2.0).round(12)
+    /// array([2., 1.])
+    #[pyo3(signature = (nu=1))]
+    fn antiderivative(
+        &self,
+        py: Python<'_>,
+        #[pyo3(from_py_with = options::integrals)] nu: usize,
+    ) -> PyResult<Py<PyAny>> {
+        Self { fits: Arc::new(self.fits.antiderivative(py, nu)) }.into_python(py)
+    }
+
+    /// The definite integral of every row.
+    ///
+    /// Parameters
+    /// ----------
+    /// a, b : float or array_like, shape (rows,)
+    ///     Finite ends, in any order, also outside the knots: for all rows, or one a row.
+    /// extrapolate : {None, True, False, "linear", "clip"}
+    ///     As for a call.
+    ///
+    /// Returns
+    /// -------
+    /// numpy.ndarray, shape (rows,)
+    ///     One number a row. Cost O(log n) a row after a first call of O(n).
+    ///
+    /// Raises
+    /// ------
+    /// ValueError, TypeError
+    ///     If an end is not finite, or there are not as many as rows.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import shapespline as ss
+    /// >>> f = ss.fit_many_monotone([[0, 1, 2], [0, 2, 4]], [[0, 1, 2], [0, 1, 2]])
+    /// >>> f.integrate(0, [2, 4]).round(12)
+    /// array([2., 4.])
+    #[pyo3(signature = (a, b, extrapolate=None))]
+    fn integrate<'py>(
+        &self,
+        py: Python<'py>,
+        a: &Bound<'py, PyAny>,
+        b: &Bound<'py, PyAny>,
+        #[pyo3(from_py_with = options::extrapolate)] extrapolate: Option<Extrapolation>,
     ) -> PyResult<FloatArray<'py>> {
         let rows = self.fits.len();
-        match Query::named("x", x)? {
-            Query::One(x) => {
-                let query = [x];
-                let values = self.fits.evaluate(py, 1, |_| &query[..], nu, extrapolate)?;
-                shaped(py, values, &[rows])
-            }
-            Query::Many(x) => {
-                let q = x.values();
-                let values = match x.shape() {
-                    [n] => self.fits.evaluate(py, *n, |_| q, nu, extrapolate)?,
-                    [m, n] if *m == rows => {
-                        let row = |k: usize| &q[k * n..(k + 1) * n];
-                        self.fits.evaluate(py, *n, row, nu, extrapolate)?
-                    }
-                    _ => {
-                        return Err(PyValueError::new_err(format!(
-                            "x must be a number, have one axis, or be of shape ({rows}, n): a row \
-                             for each; got shape {}",
-                            x.shape_text()
-                        )));
-                    }
-                };
-                shaped(py, values, &[rows, x.shape()[x.shape().len() - 1]])
-            }
-        }
+        let (a, b) = (end("a", a, rows)?, end("b", b, rows)?);
+        let values = self.fits.map(py, |k, f| f.integrate(a[k], b[k], extrapolate));
+        shaped(py, values, &[rows])
     }
 
     fn __len__(&self) -> usize {
@@ -121,21 +353,10 @@ impl MonotoneRows {
         }
     }
 
-    /// Bending energy ``∫ f''² dx`` of every row; a fresh array.
-    #[getter]
-    fn bending_energy<'py>(&self, py: Python<'py>) -> PyResult<FloatArray<'py>> {
-        shaped(py, energies(&self.fits), &[self.fits.len()])
-    }
-
-    /// How the fit of every row went: a list of `MonotoneDiagnostics`.
-    #[getter]
-    fn diagnostics(&self) -> Vec<MonotoneDiagnostics> {
-        diagnostics(&self.fits)
-    }
-
-    fn __repr__(&self) -> String {
-        let degree = self.fits.column(0).degree();
-        format!("<MonotoneRows: {} rows, degree {degree}>", self.fits.len())
+    fn __repr__(slf: &Bound<'_, Self>) -> PyResult<String> {
+        let fits = &slf.get().fits;
+        let degree = fits.column(0).degree();
+        Ok(format!("<{}: {} rows, degree {degree}>", slf.get_type().name()?, fits.len()))
     }
 
     fn __reduce__<'py>(
@@ -157,22 +378,97 @@ impl MonotoneRows {
     }
 }
 
+/// Monotone interpolants of many rows, each with its own x: what `fit_many_monotone` gives.
+///
+/// A sequence: ``len(f)`` rows, ``f[k]`` the interpolant of one. A call evaluates row by row.
+///
+/// Examples
+/// --------
+/// >>> import shapespline as ss
+/// >>> f = ss.fit_many_monotone([[0, 1, 2], [0, 2, 4]], [[0, 1, 2], [0, 1, 2]])
+/// >>> len(f), f(1.0), f[1](1.0)
+/// (2, array([1. , 0.5]), 0.5)
+#[pyclass(module = "shapespline", frozen, extends = PiecewiseRows)]
+pub(crate) struct MonotoneRows;
+
+#[pymethods]
+impl MonotoneRows {
+    #[new]
+    fn new() -> PyResult<PyClassInitializer<Self>> {
+        Err(PyTypeError::new_err("MonotoneRows is what fit_many_monotone gives: call that"))
+    }
+
+    /// The inverse functions: in every row the x between its knots with f(x) = y.
+    ///
+    /// Parameters
+    /// ----------
+    /// y : array_like
+    ///     Values, arranged as the places of a call. NaN, and values outside a row's range, give NaN.
+    /// offsets : array_like of int, shape (rows + 1,), optional
+    ///     As for a call.
+    ///
+    /// Returns
+    /// -------
+    /// numpy.ndarray
+    ///     In the shape that a call would give. Of distribution functions: their quantiles.
+    ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     If the data of a row are not strictly monotone; the message names it.
+    ///
+    /// Notes
+    /// -----
+    /// Exact to a residual of some units in the last place. Cost O(log n) a value; many run on all
+    /// threads.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import shapespline as ss
+    /// >>> f = ss.fit_many_monotone([[0, 1, 2], [0, 2, 4]], [[0, 1, 2], [0, 1, 2]])
+    /// >>> f.inverse([0.5, 1.0])
+    /// array([[0.5, 1. ],
+    ///        [1. , 2. ]])
+    #[pyo3(signature = (y, *, offsets=None))]
+    fn inverse<'py>(
+        slf: &Bound<'py, Self>,
+        y: &Bound<'py, PyAny>,
+        offsets: Option<Offsets>,
+    ) -> PyResult<FloatArray<'py>> {
+        let base = slf.as_super().get();
+        let places = Places::of("y", y, offsets, base.fits.len())?;
+        base.each_at(slf.py(), &places, |f, y, out| match f {
+            Column::Spline(f) => f.inverse_into(y, out),
+            Column::Pieces(_) => Ok(()),
+        })
+    }
+
+    /// Bending energy ``∫ f''² dx`` of every row; a fresh array.
+    #[getter]
+    fn bending_energy<'py>(slf: &Bound<'py, Self>) -> PyResult<FloatArray<'py>> {
+        let fits = &slf.as_super().get().fits;
+        shaped(slf.py(), energies(fits), &[fits.len()])
+    }
+
+    /// How the fit of every row went: a list of `MonotoneDiagnostics`.
+    #[getter]
+    fn diagnostics(slf: &Bound<'_, Self>) -> Vec<MonotoneDiagnostics> {
+        diagnostics(&slf.as_super().get().fits)
+    }
+}
+
 /// The rows of a pickle.
 #[pyfunction]
-pub(crate) fn _rows_from_bytes(data: &[u8]) -> PyResult<MonotoneRows> {
+pub(crate) fn _rows_from_bytes(py: Python<'_>, data: &[u8]) -> PyResult<Py<PyAny>> {
     let fits: Fits = read(data)?;
     if !fits.is_sound() {
         return Err(damaged("lengths do not agree"));
     }
-    Ok(MonotoneRows { fits: Arc::new(fits) })
+    PiecewiseRows { fits: Arc::new(fits) }.into_python(py)
 }
 
 /// Where the rows start, and where the last one ends.
-fn offsets_of(
-    x: &Array<'_>,
-    y: &Array<'_>,
-    offsets: Option<&Bound<'_, PyAny>>,
-) -> PyResult<Vec<usize>> {
+fn offsets_of(x: &Array<'_>, y: &Array<'_>, offsets: Option<Offsets>) -> PyResult<Vec<usize>> {
     if x.shape() != y.shape() {
         return Err(PyValueError::new_err(format!(
             "x and y must have the same shape, got {} and {}",
@@ -182,10 +478,7 @@ fn offsets_of(
     }
     let bounds = match (x.shape(), offsets) {
         (&[rows, n], None) => (0..=rows).map(|k| k * n).collect(),
-        ([_], Some(offsets)) => offsets
-            .try_iter()?
-            .map(|item| count("offsets", 0, &item?))
-            .collect::<PyResult<Vec<usize>>>()?,
+        ([_], Some(Offsets(bounds))) => bounds,
         (_, None) => {
             return Err(PyValueError::new_err(format!(
                 "x and y must have two axes, or one and offsets; got shape {}",
@@ -199,21 +492,28 @@ fn offsets_of(
             )));
         }
     };
-    let length = x.values().len();
+    check_offsets(&bounds, x.values().len())?;
+    if bounds.len() < 2 {
+        return Err(PyValueError::new_err("there must be at least one row, got none"));
+    }
+    Ok(bounds)
+}
+
+/// Offsets begin at 0, do not fall, and end at the length of what they cut.
+fn check_offsets(bounds: &[usize], length: usize) -> PyResult<()> {
     let wrong = (0..bounds.len()).find(|&i| {
         let (first, last) = (i == 0, i + 1 == bounds.len());
         first && bounds[i] != 0
             || !first && bounds[i] < bounds[i - 1]
             || last && bounds[i] != length
     });
-    if let Some(index) = wrong {
-        let error = MonotoneError::Offset { index, value: bounds[index], length };
-        return Err(monotone_error(&error));
+    match wrong {
+        None => Ok(()),
+        Some(index) => {
+            let error = MonotoneError::Offset { index, value: bounds[index], length };
+            Err(monotone_error(&error))
+        }
     }
-    if bounds.len() < 2 {
-        return Err(PyValueError::new_err("there must be at least one row, got none"));
-    }
-    Ok(bounds)
 }
 
 /// `kind`.
@@ -290,12 +590,12 @@ pub(crate) fn fit_many_monotone(
     x: &Bound<'_, PyAny>,
     y: &Bound<'_, PyAny>,
     #[pyo3(from_py_with = family)] kind: Kind,
-    offsets: Option<&Bound<'_, PyAny>>,
+    offsets: Option<Offsets>,
     #[pyo3(from_py_with = slopes)] slopes: Option<SlopesOption>,
     #[pyo3(from_py_with = options::fairness)] fairness: Fairness,
     #[pyo3(from_py_with = options::shape)] shape: Shape,
     #[pyo3(from_py_with = options::extrapolate)] extrapolate: Option<Extrapolation>,
-) -> PyResult<MonotoneRows> {
+) -> PyResult<Py<PyAny>> {
     let (x, y) = (array("x", x)?, array("y", y)?);
     let bounds = offsets_of(&x, &y, offsets)?;
     if let Some(SlopesOption::Given { shape, .. }) = &slopes
@@ -324,7 +624,7 @@ pub(crate) fn fit_many_monotone(
             monotone::MonotoneQuartic::new(&x[from..to], &y[from..to], &options)
         })?),
     };
-    Ok(MonotoneRows { fits: Arc::new(fits) })
+    PiecewiseRows { fits: Arc::new(fits) }.into_python(py)
 }
 
 fn fit_rows<F: Send>(
@@ -333,25 +633,7 @@ fn fit_rows<F: Send>(
     fit: impl Fn(usize, usize) -> Result<F, MonotoneError> + Send + Sync,
 ) -> PyResult<Vec<F>> {
     let (rows, size) = (bounds.len() - 1, bounds[bounds.len() - 1]);
-    let one = |k: usize| {
-        fit(bounds[k], bounds[k + 1])
-            .map_err(|source| MonotoneError::InRow { row: k, source: Box::new(source) })
-    };
-    interruptible(py, size, |monitor| {
-        let mut fits = Vec::with_capacity(rows);
-        for start in (0..rows).step_by(BATCH) {
-            let batch = start..rows.min(start + BATCH);
-            let some: Result<Vec<F>, MonotoneError> = if size < PARALLEL {
-                batch.map(&one).collect()
-            } else {
-                batch.into_par_iter().map(&one).collect()
-            };
-            fits.extend(some?);
-            if monitor() == ControlFlow::Break(()) {
-                break;
-            }
-        }
-        Ok(fits)
-    })?
-    .map_err(|error| monotone_error(&error))
+    fit_all(py, size, rows, |k| fit(bounds[k], bounds[k + 1]))?.map_err(|(row, source)| {
+        monotone_error(&MonotoneError::InRow { row, source: Box::new(source) })
+    })
 }

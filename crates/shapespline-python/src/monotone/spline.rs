@@ -15,7 +15,7 @@ use super::{
 };
 use crate::{
     input::Query,
-    output::{FloatArray, shaped, zeros},
+    output::{FloatArray, room, shaped},
     work::detached,
 };
 
@@ -173,9 +173,9 @@ impl MonotoneSpline {
         match Query::named("y", y)? {
             Query::One(y) => f.inverse(y).map_err(|e| monotone_error(&e))?.into_bound_py_any(py),
             Query::Many(y) => {
-                let mut out = zeros(y.values().len(), 1)?;
                 let values = y.values();
-                detached(py, values.len(), || f.inverse_into(values, &mut out))
+                let size = room(values.len(), 1)?;
+                let out = detached(py, size, || f.inverse_many(values))
                     .map_err(|e| monotone_error(&e))?;
                 Ok(shaped(py, out, y.shape())?.into_any())
             }

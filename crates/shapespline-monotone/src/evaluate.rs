@@ -1,0 +1,182 @@
+//! Values and derivatives of the interpolants, one or many: segments first, then values, on all threads.
+
+use crate::extrapolation::Extrapolation;
+use crate::locate::{Searcher, TILE};
+use crate::piecewise::PiecewisePolynomial;
+use crate::record::Record;
+use crate::spline::{Cached, Kind, MonotoneSpline};
+use rayon::prelude::*;
+use std::array;
+
+/// Tiles that one thread works through at least.
+const TILES: usize = 128;
+/// Segments of a sorted tile that are gone through one after another.
+const RUNS: usize = 10;
+
+impl MonotoneSpline {
+    pub(crate) fn searcher(&self, many: bool) -> Searcher<'_> {
+        self.cached.locator.searcher(&self.x, many)
+    }
+
+    /// The value at one point. NaN gives NaN. O(log N), O(1) expected after a large request.
+    #[must_use]
+    pub fn value(&self, x: f64) -> f64 {
+        self.evaluate(x, 0, None)
+    }
+
+    /// The derivative of order `nu` (0: the value) at one point, with another extrapolation if given.
+    #[must_use]
+    pub fn evaluate(&self, x: f64, nu: usize, extrapolate: Option<Extrapolation>) -> f64 {
+        let i = self.searcher(false).find(x);
+        self.at(i, x, nu, extrapolate.unwrap_or(self.extrapolate))
+    }
+
+    /// The derivative of order `nu` at every query, in the queries' order; sorted queries cost the least. Many run on
+    /// all threads.
+    #[must_use]
+    pub fn evaluate_many(
+        &self,
+        queries: &[f64],
+        nu: usize,
+        extrapolate: Option<Extrapolation>,
+    ) -> Vec<f64> {
+        let mode = extrapolate.unwrap_or(self.extrapolate);
+        let search = self.searcher(queries.len() > TILE);
+        // Collected, not written to what was zeroed before: clearing fresh memory is a good part of the time.
+        let tiles: Vec<[f64; TILE]> = if queries.len() <= 2 * TILE * TILES {
+            queries.chunks(TILE).map(|q| self.tile(search, q, nu, mode)).collect()
+        } else {
+            let tiles = queries.par_chunks(TILE).with_min_len(TILES);
+            tiles.map(|q| self.tile(search, q, nu, mode)).collect()
+        };
+        let mut values = tiles.into_flattened();
+        values.truncate(queries.len());
+        values
+    }
+
+    /// [`Self::evaluate_many`] into a slice. `out` must have the queries' length; extra entries of the longer are left
+    /// alone.
+    pub fn evaluate_into(
+        &self,
+        queries: &[f64],
+        nu: usize,
+        extrapolate: Option<Extrapolation>,
+        out: &mut [f64],
+    ) {
+        let mode = extrapolate.unwrap_or(self.extrapolate);
+        let n = queries.len().min(out.len());
+        let search = self.searcher(n > TILE);
+        let work = |(q, out): (&[f64], &mut [f64])| {
+            let values = self.tile(search, q, nu, mode);
+            out.copy_from_slice(&values[..q.len()]);
+        };
+        if n <= 2 * TILE * TILES {
+            queries[..n].chunks(TILE).zip(out[..n].chunks_mut(TILE)).for_each(work);
+        } else {
+            let tiles = queries[..n].par_chunks(TILE).zip(out[..n].par_chunks_mut(TILE));
+            tiles.with_min_len(TILES).for_each(work);
+        }
+    }
+
+    /// The values at up to [`TILE`] queries.
+    #[inline]
+    fn tile(
+        &self,
+        search: Searcher<'_>,
+        queries: &[f64],
+        nu: usize,
+        mode: Extrapolation,
+    ) -> [f64; TILE] {
+        let mut q = [self.x[0]; TILE];
+        q[..queries.len()].copy_from_slice(queries);
+        let (first, last) = (self.x[0], self.x[self.x.len() - 1]);
+        // Every query is looked at: a loop that may end early is not done several numbers at once.
+        let inside = queries.iter().fold(true, |all, &x| all & (x >= first) & (x <= last));
+        let sorted = queries.windows(2).fold(true, |all, w| all & (w[0] <= w[1]));
+        if sorted && inside && nu == 0 {
+            let n = queries.len();
+            let (i, j) = (search.find(queries[0]), queries[n - 1]);
+            let j = search.near(i, j);
+            if j - i <= RUNS {
+                // On few segments, as fine samples are: what depends on a segment alone is loaded once.
+                let mut out = [0.0; TILE];
+                let mut from = 0;
+                for k in i..=j {
+                    let run = queries[from..].iter().take_while(|v| k == j || **v < self.x[k + 1]);
+                    let to = from + run.count();
+                    self.records[k].values(&queries[from..to], &mut out[from..to]);
+                    from = to;
+                }
+                return out;
+            }
+        }
+        let mut segments = [0; TILE];
+        search.tile(queries, sorted, &mut segments);
+        let value = |i: usize, x: f64| {
+            let record: &Record = &self.records[i];
+            record.value(record.local(x))
+        };
+        if inside && nu == 0 {
+            // The places after the last query are on the first segment, and cut off by the callers.
+            return array::from_fn(|j| value(segments[j], q[j]));
+        }
+        array::from_fn(
+            |j| if j < queries.len() { self.at(segments[j], q[j], nu, mode) } else { 0.0 },
+        )
+    }
+
+    #[inline]
+    fn at(&self, i: usize, x: f64, nu: usize, mode: Extrapolation) -> f64 {
+        let last = self.x.len() - 1;
+        if x >= self.x[0] && x <= self.x[last] {
+            if nu == 0 {
+                let record = &self.records[i];
+                record.value(record.local(x))
+            } else {
+                self.derivative_at(i, x, nu)
+            }
+        } else {
+            self.outside(i, x, nu, mode)
+        }
+    }
+
+    #[cold]
+    fn outside(&self, i: usize, x: f64, nu: usize, mode: Extrapolation) -> f64 {
+        if x.is_nan() {
+            return f64::NAN;
+        }
+        let last = self.x.len() - 1;
+        let end = if x > self.x[last] { last } else { 0 };
+        match (mode, nu) {
+            (Extrapolation::Nan, _) => f64::NAN,
+            (Extrapolation::Zero, _) => 0.0,
+            (Extrapolation::Polynomial, 0) => {
+                let record = &self.records[i];
+                record.raw(record.local(x))
+            }
+            (Extrapolation::Polynomial, _) => self.derivative_at(i, x, nu),
+            (Extrapolation::CLIP, 0) => self.y[end],
+            (Extrapolation::LINEAR, 0) => self.y[end] + self.d[end] * (x - self.x[end]),
+            (Extrapolation::LINEAR, 1) => self.d[end],
+            (Extrapolation::Taylor(k), _) if nu > usize::from(k) => 0.0,
+            (Extrapolation::Taylor(_), _) => self.end_piece(i).evaluate(x, nu, Some(mode)),
+        }
+    }
+
+    /// One segment as a piecewise polynomial.
+    pub(crate) fn end_piece(&self, i: usize) -> PiecewisePolynomial {
+        let one = Self {
+            x: self.x[i..=i + 1].to_vec(),
+            y: self.y[i..=i + 1].to_vec(),
+            d: self.d[i..=i + 1].to_vec(),
+            kind: match &self.kind {
+                Kind::Quartic { e } => Kind::Quartic { e: vec![e[i]] },
+                Kind::Quintic { s } => Kind::Quintic { s: s[i..=i + 1].to_vec() },
+            },
+            records: vec![self.records[i]],
+            extrapolate: self.extrapolate,
+            cached: Cached::default(),
+        };
+        one.to_piecewise()
+    }
+}
