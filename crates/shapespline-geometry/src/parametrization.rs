@@ -53,7 +53,8 @@ impl Parametrization {
     }
 }
 
-/// Checks that every value is finite and exceeds the one before it by a finite amount.
+/// Checks that every value is finite and exceeds the one before it by an amount that is finite and has a
+/// finite reciprocal.
 pub(crate) fn check_increasing(argument: &'static str, u: &[f64]) -> Result<(), InputError> {
     if let Some(index) = u.iter().position(|v| !v.is_finite()) {
         return Err(InputError::NotFinite { argument, index, value: u[index] });
@@ -67,8 +68,18 @@ pub(crate) fn check_increasing(argument: &'static str, u: &[f64]) -> Result<(), 
         if spacing.is_infinite() {
             return Err(InputError::Overflow { index: i, what: "the spacing", value: spacing });
         }
+        check_reciprocal(argument, i + 1, spacing)?;
     }
     Ok(())
+}
+
+/// Evaluation multiplies by the reciprocal of a spacing, which below 5.6e−309 is infinite.
+fn check_reciprocal(argument: &'static str, index: usize, spacing: f64) -> Result<(), InputError> {
+    if (1.0 / spacing).is_finite() {
+        Ok(())
+    } else {
+        Err(InputError::TooClose { argument, index, spacing })
+    }
 }
 
 fn accumulate(points: &[DVec3], spacing: impl Fn(f64) -> f64) -> Result<Vec<f64>, InputError> {
@@ -94,6 +105,7 @@ fn accumulate(points: &[DVec3], spacing: impl Fn(f64) -> f64) -> Result<Vec<f64>
                 value,
             });
         }
+        check_reciprocal("parameters", i + 1, next - sum)?;
         sum = next;
         u.push(sum);
     }

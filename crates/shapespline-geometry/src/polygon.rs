@@ -7,6 +7,7 @@ use glam::DVec3;
 use crate::{
     Boundary, InputError, Parametrization,
     boundary::{check_tangent, circle_tangent},
+    error::check_room,
     vector::normalize,
 };
 
@@ -109,6 +110,7 @@ impl DataPolygon {
         };
         let (longest, parameters) = (longest?, parameters?);
         check_velocities(&points, &parameters, longest)?;
+        check_room("points", &points)?;
         let tangents = end_tangents(&points, &parameters, boundary)?;
         let directions = OnceLock::new();
         Ok(Self { points, parameters, directions, boundary, tangents, dimension })
