@@ -17,8 +17,11 @@ use super::{
 };
 use crate::{
     input::{Array, array},
-    work::interruptible,
+    work::{interruptible, interruptible_many},
 };
+
+/// A question whether to go on, asked from any thread.
+type GoOn<'a> = &'a (dyn Fn() -> ControlFlow<()> + Sync);
 
 /// Columns that are fitted between two looks for Ctrl-C.
 const BATCH: usize = 4096;
@@ -69,37 +72,40 @@ impl<'py> Data<'py> {
         Ok(Some(self.layout.split(values, self.x.values().len())))
     }
 
-    /// `fit(x, y, slopes)` of every column.
+    /// `fit(x, y, slopes, go_on)` of every column.
     fn fit<F: Send>(
         &self,
         py: Python<'_>,
         slopes: &SlopesOption,
-        fit: impl Fn(&[f64], &[f64], Slopes) -> Result<F, MonotoneError> + Send + Sync,
+        fit: impl Fn(&[f64], &[f64], Slopes, GoOn<'_>) -> Result<F, MonotoneError> + Send + Sync,
     ) -> PyResult<Vec<F>> {
         let given = self.slopes(slopes)?;
         let mut copy = Vec::new();
         let (x, y) = (self.x.values(), self.columns(&mut copy));
         let n = x.len();
-        let one = |k: usize| {
+        let one = |k: usize, go_on: GoOn<'_>| {
             let slopes = match (slopes, &given) {
                 (SlopesOption::Optimal, _) => Slopes::Optimal,
                 (_, Some(d)) => Slopes::Given(d[k * n..(k + 1) * n].to_vec()),
                 _ => Slopes::FritschButland,
             };
-            fit(x, &y[k * n..(k + 1) * n], slopes).map_err(|error| (k, error))
+            fit(x, &y[k * n..(k + 1) * n], slopes, go_on).map_err(|error| (k, error))
         };
         let columns = self.layout.columns();
+        let always = || ControlFlow::Continue(());
         let fits = if y.len() < PARALLEL && columns == 1 {
-            py.detach(|| one(0).map(|f| vec![f]))
+            py.detach(|| one(0, &always).map(|f| vec![f]))
+        } else if columns == 1 {
+            interruptible_many(py, |go_on| one(0, go_on).map(|f| vec![f]))?
         } else {
             interruptible(py, y.len(), |monitor| {
                 let mut fits = Vec::with_capacity(columns);
                 for start in (0..columns).step_by(BATCH) {
                     let batch = start..columns.min(start + BATCH);
-                    let some: Result<Vec<F>, _> = if y.len() < PARALLEL || columns == 1 {
-                        batch.map(&one).collect()
+                    let some: Result<Vec<F>, _> = if y.len() < PARALLEL {
+                        batch.map(|k| one(k, &always)).collect()
                     } else {
-                        batch.into_par_iter().map(&one).collect()
+                        batch.into_par_iter().map(|k| one(k, &always)).collect()
                     };
                     fits.extend(some?);
                     if monitor() == ControlFlow::Break(()) {
@@ -191,7 +197,7 @@ impl MonotoneQuartic {
         }
         let data = Data::of(x, y, axis)?;
         let extrapolate = extrapolate.unwrap_or_default();
-        let fits = data.fit(x.py(), &slopes, |x, y, slopes| {
+        let fits = data.fit(x.py(), &slopes, |x, y, slopes, _| {
             let options = QuarticOptions { slopes, shape: shape.clone(), extrapolate };
             shapespline::monotone::MonotoneQuartic::new(x, y, &options)
         })?;
@@ -263,9 +269,9 @@ impl MonotoneQuintic {
     ) -> PyResult<PyClassInitializer<Self>> {
         let data = Data::of(x, y, axis)?;
         let extrapolate = extrapolate.unwrap_or_default();
-        let fits = data.fit(x.py(), &slopes, |x, y, slopes| {
+        let fits = data.fit(x.py(), &slopes, |x, y, slopes, go_on| {
             let options = QuinticOptions { slopes, fairness, extrapolate };
-            shapespline::monotone::MonotoneQuintic::new(x, y, &options)
+            shapespline::monotone::MonotoneQuintic::new_with(x, y, &options, go_on)
         })?;
         Ok(object(Fits::Quintic(fits), data.layout, Self))
     }
