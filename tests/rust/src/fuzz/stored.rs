@@ -17,9 +17,9 @@ pub(super) fn run(data: &[u8]) {
     let kind = bytes.below(10);
     let honest = bytes.flag();
     match kind {
-        0 => read(&mut bytes, honest, |b| nu(b), |s, b| questions(s.curve(), b)),
-        1 => read(&mut bytes, honest, |b| tension(b), |s, b| questions(s.curve(), b)),
-        2 => read(&mut bytes, honest, |b| catmull_rom(b), |s, b| questions(s.curve(), b)),
+        0 => read(&mut bytes, honest, nu, |s, b| questions(s.curve(), b)),
+        1 => read(&mut bytes, honest, tension, |s, b| questions(s.curve(), b)),
+        2 => read(&mut bytes, honest, catmull_rom, |s, b| questions(s.curve(), b)),
         3 => read(&mut bytes, honest, |b| Some(nu(b)?.curve().clone()), |c, b| questions(c, b)),
         4 => {
             let make = |b: &mut Bytes<'_>| -> Option<ReparametrizedCubic> {
@@ -27,8 +27,8 @@ pub(super) fn run(data: &[u8]) {
             };
             read(&mut bytes, honest, make, |c, b| questions(c, b));
         }
-        5 => read::<MonotoneQuartic>(&mut bytes, honest, function, |f, b| ask(f, b)),
-        6 => read::<MonotoneQuintic>(&mut bytes, honest, function, |f, b| ask(f, b)),
+        5 => read::<MonotoneQuartic>(&mut bytes, honest, function, ask),
+        6 => read::<MonotoneQuintic>(&mut bytes, honest, function, ask),
         7 => {
             let make = |b: &mut Bytes<'_>| -> Option<PiecewisePolynomial> {
                 Some(function::<MonotoneQuintic>(b)?.function().to_piecewise())
