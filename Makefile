@@ -4,6 +4,9 @@
 #   make check   formatting, lints, stubs, types, `make test`, then `make docs`: what CI runs
 #   make bench   speed and memory beside SciPy's, as one table
 #   make docs    the documentation of both languages in site/: pages and notebooks executed, warnings are errors
+#   make packages  wheel, sdist and crates, built and tried in clean environments on CPython 3.10 to 3.13 (takes long)
+#   make powerset  every crate under every set of its features (needs cargo-hack)
+#   make fuzz    every fuzz target for FUZZ seconds (needs cargo-fuzz and nightly)
 #   make clean   forget all of the above
 
 PYTHON ?= python3
@@ -26,8 +29,11 @@ CARGO_TEST := cargo test --workspace --exclude shapespline-python
 PYTEST ?=
 # Arguments for the benchmark, for example: make bench BENCH=--quick
 BENCH ?=
+# Seconds for each fuzz target.
+FUZZ ?= 60
 
-.PHONY: demo test test-rust test-python check lint-rust lint-python bench docs clean extension cargo
+.PHONY: demo test test-rust test-python check lint-rust lint-python bench docs packages powerset fuzz clean extension \
+	cargo
 .DELETE_ON_ERROR:
 
 demo: extension
@@ -71,6 +77,27 @@ docs: extension $(VENV)/.docs
 	$(BIN)/python scripts/gallery.py
 	$(BIN)/python -m sphinx -W --keep-going -q -b html -c python/docs python site/python
 	@echo "open site/python/docs/index.html (Python) or site/rust/shapespline/index.html (Rust)"
+
+packages: $(VENV)/.python | cargo
+	$(BIN)/python scripts/packages.py
+
+# NLopt is built from source, with cmake: left out where there is none.
+powerset: | cargo
+	@cargo hack --version >/dev/null 2>&1 || { \
+		echo "make: cargo-hack is missing; get it with: cargo install cargo-hack" >&2; exit 1; }
+	cargo hack check --workspace --exclude shapespline-python --feature-powerset --no-dev-deps \
+		$(if $(shell command -v cmake),,--exclude-features nlopt)
+
+# What is learnt goes to out/fuzz, findings to fuzz/artifacts; fuzz/corpus holds what was once found.
+fuzz: | cargo
+	@cargo +nightly fuzz --version >/dev/null 2>&1 || { \
+		echo "make: cargo-fuzz or nightly is missing: rustup toolchain install nightly; cargo install cargo-fuzz" >&2; \
+		exit 1; }
+	for target in $$(ls fuzz/corpus); do \
+		mkdir -p out/fuzz/$$target && \
+		cargo +nightly fuzz run $$target out/fuzz/$$target fuzz/corpus/$$target -- \
+			-max_total_time=$(FUZZ) -timeout=10 -max_len=600 -rss_limit_mb=4096 || exit 1; \
+	done
 
 clean:
 	rm -rf $(VENV) target out site python/docs/images/gallery .pytest_cache .mypy_cache .ruff_cache .hypothesis

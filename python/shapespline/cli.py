@@ -186,11 +186,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except KeyboardInterrupt:
         print("shapespline: interrupted", file=sys.stderr)
         return 130
-    except BrokenPipeError:
-        # Whoever read the output has seen enough (`| head`). Python would complain once more when
-        # it closes the pipe.
+    except OSError as error:
+        # Files have errors of their own: this is standard output. Python would complain once more
+        # when it closes it.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return 141
+        if isinstance(error, BrokenPipeError):
+            return 141  # whoever read the output has seen enough (`| head`)
+        print(f"shapespline: standard output: cannot be written: {error.strerror}", file=sys.stderr)
+        return 2
     return status
 
 

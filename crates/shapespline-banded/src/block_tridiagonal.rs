@@ -198,4 +198,15 @@ mod tests {
             }
         }
     }
+
+    /// Found by mutation: nobody looked at the count.
+    #[test]
+    fn pivots_that_cancel_are_counted() {
+        let mut system = BlockElimination::with_capacity(2);
+        system.push([1.0, 0.0, 1.0], [2.0, 0.0, 0.0, 2.0], [1.0, 1.0]);
+        assert_eq!(system.repaired(), 0);
+        // Both pivots would be 1 − 2·2.
+        system.push([1.0, 0.0, 1.0], [0.0; 4], [1.0, 1.0]);
+        assert_eq!(system.repaired(), 2);
+    }
 }

@@ -557,4 +557,22 @@ mod tests {
         program.off_diagonal = &[2.0];
         assert!(matches!(solve(&program), Err(BoxQpError::NotPositiveDefinite { index: 1, .. })));
     }
+
+    /// Found by mutation: a residual is relative to the sum of the sizes of a row's terms.
+    #[test]
+    fn a_residual_by_hand() {
+        let program = TridiagonalBoxQp {
+            diagonal: &[4.0, 2.0],
+            off_diagonal: &[1.0],
+            linear: &[3.0, -1.0],
+            lower: &[f64::NEG_INFINITY; 2],
+            upper: &[f64::INFINITY; 2],
+        };
+        // Rows: 4·0.5 + 1·0.25 + 3 = 5.25 of terms 2, 0.25, 3; 0.5 + 0.5 − 1 = 0.
+        assert_eq!(kkt_residual(&program, &[0.5, 0.25]), 5.25 / 5.25);
+        // 4·(−0.5) + 0.25 + 3 = 1.25 of 5.25; −0.5 + 0.5 − 1 = −1 of 2.
+        assert_eq!(kkt_residual(&program, &[-0.5, 0.25]), 0.5);
+        // 4·(−0.5) + 1·1 + 3 = 2 of 6; −0.5 + 2 − 1 = 0.5 of 3.5.
+        assert_eq!(kkt_residual(&program, &[-0.5, 1.0]), 2.0 / 6.0);
+    }
 }

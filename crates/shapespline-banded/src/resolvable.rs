@@ -409,4 +409,31 @@ mod tests {
         assert!(matches!(found, SolveError::Pivot { row: 4, .. }));
         assert!(matches!(Resolvable::new(&system), Err(SolveError::Pivot { row: 4, .. })));
     }
+
+    /// Found by mutation: nobody solved a cyclic system again whose rows had changed since.
+    #[test]
+    fn solving_again_takes_in_whatever_changed() {
+        for cyclic in [false, true] {
+            let row = |i: usize| Row {
+                lower: 0.5,
+                diagonal: 2.0,
+                upper: 0.5,
+                right: DVec3::new((i as f64).sin(), (i as f64 * 0.7).cos(), 1.0),
+            };
+            let mut rows: Vec<Row> = (0..50).map(row).collect();
+            if !cyclic {
+                (rows[0].lower, rows[49].upper) = (0.0, 0.0);
+            }
+            let mut system = Array { rows, cyclic };
+            let mut solver = Resolvable::new(&system).unwrap();
+            // Far from where the elimination begins.
+            system.rows[30].right *= 3.0;
+            system.rows[31].diagonal = 5.0;
+            solver.solve_again(&system).unwrap();
+            let fresh = Resolvable::new(&system).unwrap();
+            for (found, expected) in solver.solution().iter().zip(fresh.solution()) {
+                assert!((*found - *expected).length() < 1e-14, "{cyclic}: {found} {expected}");
+            }
+        }
+    }
 }

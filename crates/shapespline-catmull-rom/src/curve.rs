@@ -66,11 +66,34 @@ impl HandleOptions {
 /// A Catmull–Rom curve through points in the plane or in space. Immutable.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "Stored"))]
 pub struct CatmullRom {
     curve: PiecewiseCubic,
     tension: Vec<f64>,
     boundary: Boundary,
     continuity: Continuity,
+}
+
+/// What was stored, by whomever: checked as far as anything could go wrong later.
+#[cfg(feature = "serde")]
+#[derive(serde::Deserialize)]
+#[serde(rename = "CatmullRom")]
+struct Stored {
+    curve: PiecewiseCubic,
+    tension: Vec<f64>,
+    boundary: Boundary,
+    continuity: Continuity,
+}
+
+#[cfg(feature = "serde")]
+impl TryFrom<Stored> for CatmullRom {
+    type Error = InputError;
+
+    fn try_from(stored: Stored) -> Result<Self, InputError> {
+        let Stored { curve, tension, boundary, continuity } = stored;
+        shapespline_search::check_stored(&tension, &curve)?;
+        Ok(Self { curve, tension, boundary, continuity })
+    }
 }
 
 impl CatmullRom {

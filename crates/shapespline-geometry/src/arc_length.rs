@@ -2,7 +2,10 @@
 
 use rayon::prelude::*;
 
-use crate::{CubicSegment, Curve, PiecewiseCubic, Side, vector::length};
+use crate::{
+    CubicSegment, Curve, DVec3, PiecewiseCubic, Side,
+    vector::{length, power_of_two},
+};
 
 /// Nodes and weights of the ten-point Gauss–Legendre rule on `[−1, 1]`, positive half.
 const GAUSS: [(f64, f64); 5] = [
@@ -16,14 +19,30 @@ const GAUSS: [(f64, f64); 5] = [
 /// Error allowed in the length of a segment, relative to the length of its Bézier polygon.
 const ACCURACY: f64 = 1e-13;
 
+/// Segments from on which they are measured on all threads. Not fewer, and none of rayon's iterators below:
+/// Python calls small work where it stands, and after a fork the threads of rayon's own pool are gone.
+const MANY: usize = 8192;
+
 impl CubicSegment {
     /// Length of the part `[from, to]`, by adaptive Gauss–Legendre quadrature: a ten-point rule is
-    /// accepted when its two halves agree with it to `1e-13` of the segment's Bézier polygon.
-    /// Backwards the length is negative.
+    /// accepted when its two halves agree with it to `1e-13` of the segment's Bézier polygon
+    /// (times `|t|³` beyond its ends). Backwards the length is negative.
     #[must_use]
     pub fn arc_length(&self, from: f64, to: f64) -> f64 {
-        let polygon = length(self.a) + length(self.b) + length(self.c);
-        adaptive(self, from, to, rule(self, from, to), ACCURACY * polygon, 40)
+        let largest = self.a.abs().max(self.b.abs()).max(self.c.abs()).max_element();
+        if !(largest > 0.0 && largest.is_finite()) {
+            // All points are one; or there is no length to be had.
+            return largest * (to - from);
+        }
+        // In units of the longest leg, so that neither errors nor speeds leave the range of f64.
+        let unit = power_of_two(largest);
+        let [a, b, c] = [self.a, self.b, self.c].map(|leg| leg / unit);
+        let scaled = Self { start: DVec3::ZERO, a, b, c };
+        // Beyond the ends the speed grows as t², and its rounding errors with it: asking for less
+        // than they are would halve intervals without end.
+        let reach = 1.0f64.max(from.abs()).max(to.abs());
+        let size = (length(a) + length(b) + length(c)) * (reach * reach * reach);
+        unit * adaptive(&scaled, from, to, rule(&scaled, from, to), ACCURACY * size, 40)
     }
 }
 
@@ -60,10 +79,15 @@ impl<'a, C: Curve + ?Sized> ArcLength<'a, C> {
     #[must_use]
     pub fn new(curve: &'a C) -> Self {
         let cubic = curve.cubic();
+        let n = cubic.segments();
         let measure = |i: usize| cubic.segment(i).arc_length(0.0, 1.0);
-        let lengths = (0..cubic.segments()).into_par_iter().with_min_len(1024).map(measure);
-        // In space for the zero before the first; then the running sums take the lengths' places.
-        let mut upto: Vec<f64> = rayon::iter::once(0.0).chain(lengths).collect();
+        // With room for the zero before the first; then the running sums take the lengths' places.
+        let mut upto: Vec<f64> = if n < MANY {
+            std::iter::once(0.0).chain((0..n).map(measure)).collect()
+        } else {
+            let lengths = (0..n).into_par_iter().with_min_len(MANY / 8).map(measure);
+            rayon::iter::once(0.0).chain(lengths).collect()
+        };
         let mut sum = 0.0;
         for length in &mut upto {
             sum += *length;
@@ -85,11 +109,8 @@ impl<'a, C: Curve + ?Sized> ArcLength<'a, C> {
         let cubic = self.curve.cubic();
         let knots = cubic.knots();
         let (first, last) = (knots[0], knots[knots.len() - 1]);
-        let turns = if cubic.domain() == crate::Domain::Closed {
-            ((u - first) / (last - first)).floor()
-        } else {
-            0.0
-        };
+        let wraps = cubic.domain() == crate::Domain::Closed && !(first <= u && u <= last);
+        let turns = if wraps { ((u - first) / (last - first)).floor() } else { 0.0 };
         let (i, t) = self.curve.locate(u - turns * (last - first), Side::Right);
         turns * self.total() + self.upto[i] + cubic.segment(i).arc_length(0.0, t)
     }
@@ -142,7 +163,7 @@ impl<'a, C: Curve + ?Sized> ArcLength<'a, C> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{DVec3, Dimension, Domain};
+    use crate::{Dimension, Domain};
 
     /// A parabola `(u, u²)` in two segments: its length is known in closed form.
     fn parabola() -> PiecewiseCubic {
@@ -174,6 +195,32 @@ mod tests {
         );
         assert_eq!(table.parameter(-1.0), 0.0);
         assert_eq!(table.parameter(100.0), 2.0);
+    }
+
+    /// Found by fuzzing: both took longer than anybody waits.
+    #[test]
+    fn far_beyond_the_ends_and_at_every_scale() {
+        let [a, b, c] = [DVec3::X, DVec3::Y, DVec3::new(0.3, -0.2, 1.0)];
+        let segment = CubicSegment { start: DVec3::ZERO, a, b, c };
+        let inside = segment.arc_length(0.0, 1.0);
+        for scale in [1e-320, 1e-300, 1e-160, 1e160, 1e300] {
+            let [a, b, c] = [a, b, c].map(|leg| leg * scale);
+            let found = CubicSegment { start: DVec3::ZERO, a, b, c }.arc_length(0.0, 1.0);
+            let rounding = if scale < 1e-308 { 1e-2 } else { 1e-12 };
+            assert!((found / scale / inside - 1.0).abs() < rounding, "{scale}: {found}");
+        }
+        // Far out the cubic is that of its leading coefficient.
+        let leading = (c - 2.0 * b + a).length();
+        for t in [-654_115_648_176.0f64, -1e20, 1e9, 1e60] {
+            let found = segment.arc_length(0.0, t) / (t * t * t.abs());
+            assert!((found.abs() / leading - 1.0).abs() < 1e-8, "{t}: {found} and {leading}");
+        }
+        assert_eq!(segment.arc_length(0.0, -18.4), -segment.arc_length(-18.4, 0.0));
+        let long = segment.arc_length(0.0, -1e200);
+        assert!(!long.is_finite(), "{long}");
+        let point =
+            CubicSegment { start: DVec3::X, a: DVec3::ZERO, b: DVec3::ZERO, c: DVec3::ZERO };
+        assert_eq!(point.arc_length(0.0, 1.0), 0.0);
     }
 
     #[test]

@@ -1,5 +1,7 @@
 //! What can be wrong with a user's input: always with the argument, the place and the value.
 
+use glam::DVec3;
+
 /// Unusable input. Every variant names the argument, the index and the offending value.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -59,6 +61,17 @@ pub enum InputError {
         previous: f64,
         /// The value.
         value: f64,
+    },
+    /// Parameters that increase by so little that nothing can be divided by it.
+    #[error("{argument}[{index}] exceeds {argument}[{before}] by {spacing:e}, too little for f64",
+            before = index - 1)]
+    TooClose {
+        /// Name of the argument.
+        argument: &'static str,
+        /// Index of the second of the two.
+        index: usize,
+        /// Their difference.
+        spacing: f64,
     },
     /// Periodic data whose last point is not the first.
     #[error("boundary \"periodic\" needs points[{last}] = points[0], got {end} and {start}")]
@@ -126,4 +139,25 @@ pub enum InputError {
         /// Its value.
         value: f64,
     },
+}
+
+/// Points and legs are summed with weights up to one: so much room has to be left.
+const ROOM: f64 = 16.0;
+
+/// Checks that coordinates are numbers that leave room for sums of them. O(n), without a branch an entry.
+pub(crate) fn check_room(argument: &'static str, points: &[DVec3]) -> Result<(), InputError> {
+    // Zero times a number is zero, times an infinity or NaN it is NaN.
+    let zero = points.iter().fold(DVec3::ZERO, |sum, p| sum + *p * ROOM * 0.0);
+    if zero == DVec3::ZERO {
+        return Ok(());
+    }
+    let entries = points.iter().enumerate().flat_map(|(i, p)| p.to_array().map(|x| (i, x)));
+    match entries.into_iter().find(|(_, x)| !(x * ROOM).is_finite()) {
+        Some((index, value)) if value.is_finite() => {
+            let allowed = "below 1.1e307 in magnitude";
+            Err(InputError::OutOfRange { argument, index, value, allowed })
+        }
+        Some((index, value)) => Err(InputError::NotFinite { argument, index, value }),
+        None => Ok(()),
+    }
 }

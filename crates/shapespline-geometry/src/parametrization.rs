@@ -54,7 +54,8 @@ impl Parametrization {
     }
 }
 
-/// Checks that every value is finite and exceeds the one before it by a finite amount.
+/// Checks that every value is finite and exceeds the one before it by an amount that is finite and has a
+/// finite reciprocal.
 pub(crate) fn check_increasing(argument: &'static str, u: &[f64]) -> Result<(), InputError> {
     if let Some(index) = u.iter().position(|v| !v.is_finite()) {
         return Err(InputError::NotFinite { argument, index, value: u[index] });
@@ -68,9 +69,15 @@ pub(crate) fn check_increasing(argument: &'static str, u: &[f64]) -> Result<(), 
         if spacing.is_infinite() {
             return Err(InputError::Overflow { index: i, what: "the spacing", value: spacing });
         }
+        if spacing < LEAST {
+            return Err(InputError::TooClose { argument, index: i + 1, spacing });
+        }
     }
     Ok(())
 }
+
+/// The least spacing: evaluation multiplies by its reciprocal, which must be finite.
+const LEAST: f64 = 5.6e-309;
 
 /// Points from which on their distances are taken on all threads.
 const MANY: usize = 32_768;
@@ -91,8 +98,8 @@ fn accumulate(
     let mut sum = 0.0;
     for i in 1..u.len() {
         let next = sum + u[i];
-        // One comparison for what is nearly never so: NaN, too, is not in between.
-        if !(sum < next && next < f64::INFINITY) {
+        // Written so that a NaN fails.
+        if !(next - sum >= LEAST && next < f64::INFINITY) {
             return Err(bad_spacing(points, i, sum, next));
         }
         sum = next;
@@ -101,14 +108,17 @@ fn accumulate(
     Ok(u)
 }
 
-/// What is wrong with the parameter of point `index`, which should be finite and exceed that before.
+/// What is wrong with the parameter of point `index`, which should be finite and exceed that before by
+/// something.
 fn bad_spacing(points: &[DVec3], index: usize, previous: f64, value: f64) -> InputError {
     if !value.is_finite() {
         InputError::Overflow { index: index - 1, what: "its parameter", value }
     } else if points[index - 1] == points[index] {
         InputError::RepeatedPoint { index, value: points[index] }
-    } else {
+    } else if value <= previous {
         // A chord lost to rounding beside the length so far.
         InputError::NotIncreasing { argument: "parameters", index, previous, value }
+    } else {
+        InputError::TooClose { argument: "parameters", index, spacing: value - previous }
     }
 }

@@ -8,6 +8,7 @@ use rayon::prelude::*;
 use crate::{
     CubicSegment, Curve, DataPolygon, Dimension, InputError, Locator, Side,
     batch::{Evaluate, Locals},
+    error::check_room,
     locate::search,
     parametrization::check_increasing,
 };
@@ -29,6 +30,7 @@ pub enum Domain {
 /// knots are the points exactly.
 #[derive(Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "Stored"))]
 pub struct PiecewiseCubic {
     knots: Vec<f64>,
     points: Vec<DVec3>,
@@ -39,6 +41,28 @@ pub struct PiecewiseCubic {
     /// Made by the first large unsorted evaluation.
     #[cfg_attr(feature = "serde", serde(skip))]
     locator: OnceLock<Option<Locator>>,
+}
+
+/// What was stored, by whomever: it becomes a curve only if the constructor takes it.
+#[cfg(feature = "serde")]
+#[derive(serde::Deserialize)]
+#[serde(rename = "PiecewiseCubic")]
+struct Stored {
+    knots: Vec<f64>,
+    points: Vec<DVec3>,
+    legs: Vec<[DVec3; 2]>,
+    dimension: Dimension,
+    domain: Domain,
+}
+
+#[cfg(feature = "serde")]
+impl TryFrom<Stored> for PiecewiseCubic {
+    type Error = InputError;
+
+    fn try_from(stored: Stored) -> Result<Self, InputError> {
+        let Stored { knots, points, legs, dimension, domain } = stored;
+        Self::new(knots, points, legs, dimension, domain)
+    }
 }
 
 impl Clone for PiecewiseCubic {
@@ -67,7 +91,8 @@ impl PiecewiseCubic {
     /// Curve from knots, points and the end legs of each segment.
     ///
     /// # Errors
-    /// Knots that do not increase, lengths that do not belong together, non-finite legs.
+    /// Knots that do not increase, lengths that do not belong together, points or legs that are not
+    /// finite or leave no room for sums of them (1.1e307).
     pub fn new(
         knots: Vec<f64>,
         points: Vec<DVec3>,
@@ -94,6 +119,7 @@ impl PiecewiseCubic {
             return Err(InputError::Length { argument, expected, found, per });
         }
         check_increasing("knots", &knots)?;
+        check_room("points", &points)?;
         check_legs(&legs)?;
         Ok(Self { knots, points, legs, dimension, domain, locator: OnceLock::new() })
     }
@@ -300,19 +326,19 @@ impl Curve for PiecewiseCubic {
 const MANY: usize = 32_768;
 
 fn check_legs(legs: &[[DVec3; 2]]) -> Result<(), InputError> {
-    // Zero times a number is zero, times an infinity or NaN it is NaN: one sum for all, no branch.
-    let sum = |legs: &[[DVec3; 2]]| {
-        legs.iter().fold(DVec3::ZERO, |sum, [a, c]| sum + *a * 0.0 + *c * 0.0)
-    };
-    let zero = if legs.len() < MANY { sum(legs) } else { legs.par_chunks(MANY / 4).map(sum).sum() };
-    if zero == DVec3::ZERO {
-        return Ok(());
-    }
-    let finite = |[a, c]: &[DVec3; 2]| a.is_finite() && c.is_finite();
-    let index = legs.iter().position(|pair| !finite(pair)).unwrap_or(0);
-    let of_legs = legs[index].into_iter().flat_map(|leg| leg.to_array());
-    let value = of_legs.into_iter().find(|x| !x.is_finite()).unwrap_or(f64::NAN);
-    Err(InputError::NotFinite { argument: "legs", index, value })
+    let check = |legs: &[[DVec3; 2]]| check_room("legs", legs.as_flattened());
+    if legs.len() < MANY { check(legs) } else { legs.par_chunks(MANY / 4).map(check).collect() }
+        .or_else(|_| check(legs))
+        // Two legs a segment: the index is the segment's.
+        .map_err(|error| match error {
+            InputError::NotFinite { argument, index, value } => {
+                InputError::NotFinite { argument, index: index / 2, value }
+            }
+            InputError::OutOfRange { argument, index, value, allowed } => {
+                InputError::OutOfRange { argument, index: index / 2, value, allowed }
+            }
+            other => other,
+        })
 }
 
 #[cfg(test)]

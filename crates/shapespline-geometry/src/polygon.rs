@@ -11,6 +11,7 @@ use rayon::prelude::*;
 use crate::{
     Boundary, InputError, Parametrization,
     boundary::{check_tangent, circle_tangent},
+    error::check_room,
     vector::normalize,
 };
 
@@ -106,6 +107,7 @@ impl DataPolygon {
         let longest = check_chords(&points)?;
         let parameters = parametrization.parameters(&points)?;
         check_velocities(&points, &parameters, longest)?;
+        check_room("points", &points)?;
         let tangents = end_tangents(&points, &parameters, boundary)?;
         let directions = OnceLock::new();
         Ok(Self { points, parameters, directions, boundary, tangents, dimension })

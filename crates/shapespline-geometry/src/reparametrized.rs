@@ -16,9 +16,28 @@ use crate::{
 /// parameter is another. Outside an open curve the end cubics go on, `t` as its end tangent.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "Stored"))]
 pub struct ReparametrizedCubic {
     cubic: PiecewiseCubic,
     slopes: Vec<[f64; 2]>,
+}
+
+/// What was stored, by whomever: it becomes a curve only if the constructor takes it.
+#[cfg(feature = "serde")]
+#[derive(serde::Deserialize)]
+#[serde(rename = "ReparametrizedCubic")]
+struct Stored {
+    cubic: PiecewiseCubic,
+    slopes: Vec<[f64; 2]>,
+}
+
+#[cfg(feature = "serde")]
+impl TryFrom<Stored> for ReparametrizedCubic {
+    type Error = InputError;
+
+    fn try_from(stored: Stored) -> Result<Self, InputError> {
+        Self::new(stored.cubic, stored.slopes)
+    }
 }
 
 /// The highest order of derivative that is offered.

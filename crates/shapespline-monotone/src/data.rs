@@ -26,10 +26,13 @@ impl PowerOfTwo {
     }
 }
 
-/// The binary exponent of a positive finite number (subnormals included).
+/// The binary exponent of a finite number that is not negative: subnormals included, and for zero (a mean of
+/// subnormals can round to it) that of the least.
 pub(crate) fn exponent(value: f64) -> i32 {
     let bits = ((value.to_bits() >> 52) & 0x7ff) as i32;
-    if bits == 0 {
+    if value == 0.0 {
+        -1074
+    } else if bits == 0 {
         exponent(value * f64::from_bits(0x4350_0000_0000_0000)) - 54
     } else {
         bits - 1023
@@ -216,7 +219,7 @@ pub(crate) fn out_of_range(
 }
 
 /// Finite, x strictly increasing, at least two points, equal lengths, spreads that fit; the largest step of y.
-fn check(x: &[f64], y: &[f64]) -> Result<f64, MonotoneError> {
+pub(crate) fn check(x: &[f64], y: &[f64]) -> Result<f64, MonotoneError> {
     if x.len() < 2 {
         return Err(MonotoneError::TooFew { argument: "x", found: x.len(), needed: 2 });
     }

@@ -90,6 +90,9 @@ pub enum MonotoneError {
         /// Its value.
         value: f64,
     },
+    /// The caller asked to stop.
+    #[error("the fit was interrupted")]
+    Interrupted,
     /// Something wrong in one row or column of many.
     #[error("row {row}: {source}")]
     InRow {

@@ -51,6 +51,8 @@ impl TryFrom<Parts> for PiecewisePolynomial {
         {
             return Err("stored piecewise polynomial is inconsistent".to_owned());
         }
+        let zeros = vec![0.0; p.x.len()];
+        crate::data::check(&p.x, &zeros).map_err(|error| format!("stored polynomial: {error}"))?;
         Ok(Self::new(p.x, p.degree, p.c, p.extrapolate))
     }
 }

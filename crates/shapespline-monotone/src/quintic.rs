@@ -11,7 +11,7 @@ use crate::slopes;
 use crate::spline::{Kind, MonotoneSpline};
 use crate::stretches;
 use crate::windows;
-use std::ops::Deref;
+use std::ops::{ControlFlow, Deref};
 
 /// Nodal slopes.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -108,6 +108,20 @@ impl MonotoneQuintic {
     /// [`MonotoneError`] naming argument, index and value: fewer than two points, lengths that differ, NaN or
     /// infinity, x not increasing, spreads, secants or curvatures that overflow.
     pub fn new(x: &[f64], y: &[f64], options: &QuinticOptions) -> Result<Self, MonotoneError> {
+        Self::new_with(x, y, options, &|| ControlFlow::Continue(()))
+    }
+
+    /// As [`MonotoneQuintic::new`], with a question whether to go on, which is asked every few milliseconds (from
+    /// any thread).
+    ///
+    /// # Errors
+    /// As [`MonotoneQuintic::new`], and [`MonotoneError::Interrupted`] where the answer was no.
+    pub fn new_with(
+        x: &[f64],
+        y: &[f64],
+        options: &QuinticOptions,
+        go_on: &(dyn Fn() -> ControlFlow<()> + Sync),
+    ) -> Result<Self, MonotoneError> {
         let data = Data::new(x, y)?;
         data.check_curvature(y)?;
         let fairness = options.fairness;
@@ -124,7 +138,7 @@ impl MonotoneQuintic {
                 check_finite("slopes", given)?;
                 paper(&data, slopes::limited(&data, given), fairness)?
             }
-            Slopes::Optimal => fairest(&data, fairness)?,
+            Slopes::Optimal => fairest(&data, fairness, go_on)?,
         };
         let units = data.units();
         let bending = energy::total(&data, Fairness::Bending, &d, &s);
@@ -216,8 +230,14 @@ fn paper(data: &Data, mut d: Vec<f64>, fairness: Fairness) -> Result<Fit, Monoto
 }
 
 /// Slopes and second derivatives together; the paper's program when that should be better or certifiable only.
-fn fairest(data: &Data, fairness: Fairness) -> Result<Fit, MonotoneError> {
-    let best = windows::optimise(data, fairness);
+fn fairest(
+    data: &Data,
+    fairness: Fairness,
+    go_on: windows::GoOn<'_>,
+) -> Result<Fit, MonotoneError> {
+    let Some(best) = windows::optimise(data, fairness, go_on) else {
+        return Err(MonotoneError::Interrupted);
+    };
     let energy = energy::total(data, fairness, &best.d, &best.s);
     let finite = energy.is_finite() && certified(data, &best.d, &best.s);
     // The exact optimum (found in one step, or of two points) is below the paper's result by construction; one to

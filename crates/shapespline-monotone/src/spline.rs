@@ -87,6 +87,7 @@ impl TryFrom<Stored> for MonotoneSpline {
         if n < 2 || s.y.len() != n || s.d.len() != n || extra != n || s.records.len() + 1 != n {
             return Err("stored interpolant is inconsistent".to_owned());
         }
+        crate::data::check(&s.x, &s.y).map_err(|error| format!("stored interpolant: {error}"))?;
         let Stored { x, y, d, kind, records, extrapolate } = s;
         Ok(Self { x, y, d, kind, records, extrapolate, cached: Cached::default() })
     }

@@ -12,7 +12,7 @@ use crate::energy::{Fairness, is_flat};
 use crate::optimal::{self, Optimum, coefficients};
 use crate::quartic_form::certified_nonnegative;
 use rayon::prelude::*;
-use std::ops::Range;
+use std::ops::{ControlFlow, Range};
 
 /// Nodes a window answers for, and nodes it looks beyond on either side: what is beyond counts less than 4⁻⁶.
 const CORE: usize = 64;
@@ -37,18 +37,22 @@ struct Window {
     optimum: Optimum,
 }
 
-/// Slopes and second derivatives of least energy. O(N), in parallel.
-pub(crate) fn optimise(data: &Data, fairness: Fairness) -> Optimum {
+/// A question whether to go on, asked from any thread.
+pub(crate) type GoOn<'a> = &'a (dyn Fn() -> ControlFlow<()> + Sync);
+
+/// Slopes and second derivatives of least energy; none where the question whether to go on, asked once a window,
+/// was answered with no. O(N), in parallel.
+pub(crate) fn optimise(data: &Data, fairness: Fairness, go_on: GoOn<'_>) -> Option<Optimum> {
     let n = data.len();
     if n <= CORE + 2 * OVERLAP {
-        return optimal::optimise(data, fairness);
+        return Some(optimal::optimise(data, fairness));
     }
     // A segment where the energy's own minimiser falls settles it for all, and what is beyond sixteen nodes hardly
     // matters there: most long data need no elimination of their whole length.
     if (n <= PROBE || optimal::rises(&part(data, 0..PROBE), fairness, PROBE - 16))
         && let Some(done) = optimal::unconstrained(data, fairness)
     {
-        return done;
+        return Some(done);
     }
     let mut ranges = Vec::new();
     let mut start = 0;
@@ -74,12 +78,14 @@ pub(crate) fn optimise(data: &Data, fairness: Fairness) -> Optimum {
         let optimum = optimal::optimise(&part(data, segments.clone()), fairness);
         Window { segments, optimum }
     };
+    let solve_or_stop = |segments| go_on().is_continue().then(|| solve(segments));
     // Few segments cost less than waking threads; and a forked process has none to wake.
-    let windows: Vec<Window> = if n < 4096 {
-        ranges.into_iter().map(solve).collect()
+    let windows: Option<Vec<Window>> = if n < 4096 {
+        ranges.into_iter().map(solve_or_stop).collect()
     } else {
-        ranges.into_par_iter().with_min_len(2).map(solve).collect()
+        ranges.into_par_iter().with_min_len(2).map(solve_or_stop).collect()
     };
+    let windows = windows?;
     let mut joined: Vec<Window> = Vec::with_capacity(windows.len());
     // seams[k]: the last node that window k decides.
     let mut seams: Vec<usize> = Vec::with_capacity(windows.len());
@@ -121,7 +127,7 @@ pub(crate) fn optimise(data: &Data, fairness: Fairness) -> Optimum {
         out.active += window.optimum.active * (to + 1 - from_here.min(to)) / window.optimum.d.len();
         out.converged &= window.optimum.converged;
     }
-    out
+    Some(out)
 }
 
 /// The best node of two windows' overlap to go from one to the other, if any is certified.
@@ -178,8 +184,9 @@ mod tests {
             }
             let data = Data::new(&x, &y).unwrap();
             let total = |o: &Optimum| energy::total(&data, Fairness::Bending, &o.d, &o.s);
-            let (whole, parts) =
-                (optimal::optimise(&data, Fairness::Bending), optimise(&data, Fairness::Bending));
+            let go_on: GoOn<'_> = &|| ControlFlow::Continue(());
+            let whole = optimal::optimise(&data, Fairness::Bending);
+            let parts = optimise(&data, Fairness::Bending, go_on).unwrap();
             let ratio = total(&parts) / total(&whole);
             assert!((0.996..1.004).contains(&ratio), "case {case}: {ratio}");
             assert!(parts.converged && whole.converged, "case {case}: {} {}", parts.gap, whole.gap);

@@ -2,6 +2,8 @@
 
 use std::ops::ControlFlow;
 
+#[cfg(feature = "serde")]
+use shapespline_geometry::InputError;
 use shapespline_geometry::{Boundary, DVec3, DataPolygon, PiecewiseCubic};
 use shapespline_search::{
     Fit, FitError, Interpolant, SearchOptions, SolvedFamily, Step, Tension, per_point,
@@ -13,10 +15,32 @@ use crate::system::NuSystem;
 /// A ν-spline through points in the plane or in space. Immutable.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "Stored"))]
 pub struct NuSpline {
     curve: PiecewiseCubic,
     tension: Vec<f64>,
     boundary: Boundary,
+}
+
+/// What was stored, by whomever: checked as far as anything could go wrong later.
+#[cfg(feature = "serde")]
+#[derive(serde::Deserialize)]
+#[serde(rename = "NuSpline")]
+struct Stored {
+    curve: PiecewiseCubic,
+    tension: Vec<f64>,
+    boundary: Boundary,
+}
+
+#[cfg(feature = "serde")]
+impl TryFrom<Stored> for NuSpline {
+    type Error = InputError;
+
+    fn try_from(stored: Stored) -> Result<Self, InputError> {
+        let Stored { curve, tension, boundary } = stored;
+        shapespline_search::check_stored(&tension, &curve)?;
+        Ok(Self { curve, tension, boundary })
+    }
 }
 
 impl NuSpline {

@@ -54,6 +54,9 @@ pub(crate) fn detached<T: Send>(py: Python<'_>, size: usize, work: impl FnOnce()
 /// A search's question whether to go on.
 pub(crate) type Monitor<'a> = &'a mut (dyn FnMut() -> ControlFlow<()> + Send);
 
+/// The same question of many searches at once, asked from any thread.
+pub(crate) type GoOn<'a> = &'a (dyn Fn() -> ControlFlow<()> + Sync);
+
 /// Whether Ctrl-C was not pressed.
 fn go_on(stop: &AtomicBool) -> ControlFlow<()> {
     if stop.load(Ordering::Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
@@ -82,7 +85,7 @@ pub(crate) fn interruptible<T: Send>(
 /// Runs many searches at once, which ask the same question (of a function, for any thread may ask).
 pub(crate) fn interruptible_many<T: Send>(
     py: Python<'_>,
-    searches: impl FnOnce(&(dyn Fn() -> ControlFlow<()> + Sync)) -> T + Send,
+    searches: impl FnOnce(GoOn<'_>) -> T + Send,
 ) -> PyResult<T> {
     let done = py.detach(|| match pool() {
         Some(pool) => watched(&pool, |stop| searches(&|| go_on(stop))),

@@ -38,4 +38,4 @@ pub use outcome::{Diagnostics, Fit, Outcome, Phase, Status, Step};
 pub use pattern::Pattern;
 pub use search::{search, search_and_report};
 pub use system::{SolvedFamily, TensionSystem, solve_legs};
-pub use tension::{Tension, per_point};
+pub use tension::{Tension, check_stored, per_point};

@@ -1,6 +1,6 @@
 //! Tension as users give it: checked once, for every family.
 
-use shapespline_geometry::{DataPolygon, InputError};
+use shapespline_geometry::{DataPolygon, InputError, PiecewiseCubic};
 
 /// Tension at the nodes.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -66,4 +66,23 @@ pub fn per_point(mut values: Vec<f64>, closed: bool) -> Vec<f64> {
         values.extend(values.first().copied());
     }
     values
+}
+
+/// Whether tension that was stored with a curve can be that curve's.
+///
+/// # Errors
+/// Tension that is not one a point, negative or NaN.
+pub fn check_stored(tension: &[f64], curve: &PiecewiseCubic) -> Result<(), InputError> {
+    let (argument, expected, found) = ("tension", curve.points().len(), tension.len());
+    if found != expected {
+        return Err(InputError::Length { argument, expected, found, per: "one for each point" });
+    }
+    // 1/λ − 1 of a subnormal λ is infinite.
+    match tension.iter().position(|&x| !(x >= 0.0)) {
+        Some(index) => {
+            let (value, allowed) = (tension[index], "non-negative");
+            Err(InputError::OutOfRange { argument, index, value, allowed })
+        }
+        None => Ok(()),
+    }
 }

@@ -2,6 +2,8 @@
 
 use std::ops::ControlFlow;
 
+#[cfg(feature = "serde")]
+use shapespline_geometry::Curve;
 use shapespline_geometry::{
     Boundary, DVec3, DataPolygon, InputError, PiecewiseCubic, ReparametrizedCubic,
 };
@@ -62,10 +64,32 @@ impl TangentScale<'_> {
 /// `curve().cubic()`.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "Stored"))]
 pub struct TensionSpline {
     curve: ReparametrizedCubic,
     tension: Vec<f64>,
     boundary: Boundary,
+}
+
+/// What was stored, by whomever: checked as far as anything could go wrong later.
+#[cfg(feature = "serde")]
+#[derive(serde::Deserialize)]
+#[serde(rename = "TensionSpline")]
+struct Stored {
+    curve: ReparametrizedCubic,
+    tension: Vec<f64>,
+    boundary: Boundary,
+}
+
+#[cfg(feature = "serde")]
+impl TryFrom<Stored> for TensionSpline {
+    type Error = InputError;
+
+    fn try_from(stored: Stored) -> Result<Self, InputError> {
+        let Stored { curve, tension, boundary } = stored;
+        shapespline_search::check_stored(&tension, curve.cubic())?;
+        Ok(Self { curve, tension, boundary })
+    }
 }
 
 impl TensionSpline {

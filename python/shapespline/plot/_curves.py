@@ -196,6 +196,14 @@ def curvature_comb(
     return ax
 
 
+def _over_parameter(
+    ax: Axes, c: SpaceCurve, u: Floats, values: Floats, ylabel: str, **style: Any
+) -> None:
+    """Draw a quantity of the segments over the parameter, with a gap at each point."""
+    ax.plot(_broken(u), _broken(values), linewidth=1.2, **style)
+    ax.set(xlabel="parameter u", ylabel=ylabel, xlim=c.parameters[[0, -1]])
+
+
 def curvature(
     c: SpaceCurve,
     *,
@@ -235,7 +243,6 @@ def curvature(
     """
     ax = axes_for(ax)
     u = _inside(c, samples)
-    kappa = c.curvature(u)
     if data:
         ax.plot(
             c.parameters,
@@ -247,9 +254,8 @@ def curvature(
             zorder=1,
             label="discrete curvature of the data",
         )
-    x, y = _broken(u), _broken(kappa)
-    ax.plot(x, y, color=color, linestyle=linestyle, linewidth=1.2, label=label)
-    ax.set(xlabel="parameter u", ylabel="curvature κ", xlim=c.parameters[[0, -1]])
+    style = {"color": color, "linestyle": linestyle, "label": label}
+    _over_parameter(ax, c, u, c.curvature(u), "curvature κ", **style)
     ax.set_ylim(bottom=0, auto=True)  # the next curve may need more room
     return ax
 
@@ -315,9 +321,8 @@ def torsion(
             linewidth=0,
             label="discrete torsion of the data",
         )
-    x, y = _broken(u), _broken(tau)
-    ax.plot(x, y, color=color, linestyle=linestyle, linewidth=1.2, label=label)
+    style = {"color": color, "linestyle": linestyle, "label": label}
+    _over_parameter(ax, c, u, tau, "torsion τ", **style)
     ax.axhline(0, color="black", linewidth=0.6)
-    ax.set(xlabel="parameter u", ylabel="torsion τ", xlim=c.parameters[[0, -1]])
     ax.set_ylim(*_limits(tau, discrete[np.isfinite(discrete)]))
     return ax

@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "test code")]
 
 pub mod families;
+pub mod fuzz;
 pub mod generate;
 pub mod segments;
 

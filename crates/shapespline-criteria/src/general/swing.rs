@@ -24,9 +24,14 @@ use super::{Segment, decide::corners};
 /// Subdivision ends at intervals of this part of a piece.
 const DEPTH: u32 = 44;
 
+/// Intervals that are looked at in a segment. Where one of `x, y` is lost in rounding and the other is
+/// not, no condition holds anywhere, and halving would go on everywhere; a clear case takes some
+/// hundred.
+const INTERVALS: usize = 1 << 12;
+
 /// Whether every mixture changes sign exactly once on the segments' way.
 pub(crate) fn swings_once(segment: &Segment, normals: [DVec3; 2]) -> Sign {
-    let mut walk = Walk { past: Past::default(), known: Sign::Positive };
+    let mut walk = Walk { past: Past::default(), known: Sign::Positive, left: INTERVALS };
     let [p, q] = normals;
     let bends: Vec<(f64, DVec3, f64)> = corners(segment).collect();
     let last = segment.pieces.len();
@@ -145,6 +150,8 @@ impl Past {
 struct Walk {
     past: Past,
     known: Sign,
+    /// Intervals that may still be looked at.
+    left: usize,
 }
 
 impl Walk {
@@ -173,10 +180,11 @@ impl Walk {
             return;
         }
         let lost = arc.x.bound() <= arc.x.error() && arc.y.bound() <= arc.y.error();
-        if depth == 0 || lost {
+        if depth == 0 || lost || self.left == 0 {
             self.note(Sign::Undecided { from: arc.from, to: arc.to });
             return;
         }
+        self.left -= 1;
         let [left, right] = arc.halves();
         self.inside(&left, depth - 1);
         self.end(&left, 1);

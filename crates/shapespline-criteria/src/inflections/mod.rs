@@ -92,15 +92,23 @@ pub fn polygon_inflections_from(
     direction: DVec3,
 ) -> Result<InflectionCount, InputError> {
     let direction = unit(direction)?;
-    let count = changes(&turns(points)?, direction);
-    Ok(InflectionCount { count, direction, exact: true })
+    let turns = turns(points)?;
+    // Where the polygon hardly turns rounding may have turned the vector further than it leans.
+    let told = |(v, error): &(DVec3, f64)| {
+        let x = v.dot(direction).abs();
+        x <= ZERO || x > *error
+    };
+    let (count, exact) = (changes(&turns, direction), turns.iter().all(told));
+    Ok(InflectionCount { count, direction, exact })
 }
+
+/// Cosines that count as a right angle.
+const ZERO: f64 = 8.0 * f64::EPSILON;
 
 /// Strict sign changes of the unit vectors seen along a direction.
 fn changes(turns: &[(DVec3, f64)], direction: DVec3) -> usize {
     let (mut changes, mut last) = (0, 0.0);
-    let zero = 8.0 * f64::EPSILON;
-    for x in turns.iter().map(|t| t.0.dot(direction)).filter(|x| x.abs() > zero) {
+    for x in turns.iter().map(|t| t.0.dot(direction)).filter(|x| x.abs() > ZERO) {
         changes += usize::from(last * x < 0.0);
         last = x.signum();
     }
@@ -225,6 +233,16 @@ fn witness(
             best = next;
         }
     }
+    if best.count < most.count {
+        // The cell is thinner than rounding: vectors all but opposite bound it. Another may show as many.
+        for line in &sequence.lines {
+            let next = seen(line.v);
+            if next.count > best.count {
+                best = next;
+            }
+        }
+        best.exact &= best.count >= most.count;
+    }
     best
 }
 
@@ -249,8 +267,11 @@ fn seen_from(segment: &Segment, direction: DVec3) -> InflectionCount {
     };
     let mut joints = corners(segment);
     for piece in &segment.pieces {
-        let (signs, open) = piece.omega().map(1.0, |w| w.dot(direction)).signs();
-        exact &= !open;
+        let omega = piece.omega();
+        let (signs, open) = omega.map(1.0, |w| w.dot(direction)).signs();
+        // What is straight but for rounding turns one way and the other.
+        let noise = signs.len() > 1 && omega.bound() <= 1e4 * omega.error();
+        exact &= !open && !noise;
         signs.into_iter().for_each(&mut take);
         if let Some((_, turn, error)) = joints.next() {
             let turn = turn.dot(direction);

@@ -14,7 +14,10 @@ use super::{
     options::{self, SlopesOption, column_error},
     spline::MonotoneSpline,
 };
-use crate::input::{Array, array};
+use crate::{
+    input::{Array, array},
+    work::GoOn,
+};
 
 /// Data along an axis.
 struct Data<'py> {
@@ -62,24 +65,24 @@ impl<'py> Data<'py> {
         Ok(Some(self.layout.split(values, self.x.values().len())))
     }
 
-    /// `fit(x, y, slopes)` of every column.
+    /// `fit(x, y, slopes, go_on)` of every column.
     fn fit<F: Send>(
         &self,
         py: Python<'_>,
         slopes: &SlopesOption,
-        fit: impl Fn(&[f64], &[f64], Slopes) -> Result<F, MonotoneError> + Send + Sync,
+        fit: impl Fn(&[f64], &[f64], Slopes, GoOn<'_>) -> Result<F, MonotoneError> + Send + Sync,
     ) -> PyResult<Vec<F>> {
         let given = self.slopes(slopes)?;
         let mut copy = Vec::new();
         let (x, y) = (self.x.values(), self.columns(&mut copy));
         let n = x.len();
-        let one = |k: usize| {
+        let one = |k: usize, go_on: GoOn<'_>| {
             let slopes = match (slopes, &given) {
                 (SlopesOption::Optimal, _) => Slopes::Optimal,
                 (_, Some(d)) => Slopes::Given(d[k * n..(k + 1) * n].to_vec()),
                 _ => Slopes::FritschButland,
             };
-            fit(x, &y[k * n..(k + 1) * n], slopes)
+            fit(x, &y[k * n..(k + 1) * n], slopes, go_on)
         };
         let fits = fit_all(py, y.len(), self.layout.columns(), one)?;
         fits.map_err(|(k, error)| column_error(&error, &self.layout, k))
@@ -164,7 +167,7 @@ impl MonotoneQuartic {
         }
         let data = Data::of(x, y, axis)?;
         let extrapolate = extrapolate.unwrap_or_default();
-        let fits = data.fit(x.py(), &slopes, |x, y, slopes| {
+        let fits = data.fit(x.py(), &slopes, |x, y, slopes, _| {
             let options = QuarticOptions { slopes, shape: shape.clone(), extrapolate };
             shapespline::monotone::MonotoneQuartic::new(x, y, &options)
         })?;
@@ -236,9 +239,9 @@ impl MonotoneQuintic {
     ) -> PyResult<PyClassInitializer<Self>> {
         let data = Data::of(x, y, axis)?;
         let extrapolate = extrapolate.unwrap_or_default();
-        let fits = data.fit(x.py(), &slopes, |x, y, slopes| {
+        let fits = data.fit(x.py(), &slopes, |x, y, slopes, go_on| {
             let options = QuinticOptions { slopes, fairness, extrapolate };
-            shapespline::monotone::MonotoneQuintic::new(x, y, &options)
+            shapespline::monotone::MonotoneQuintic::new_with(x, y, &options, go_on)
         })?;
         Ok(object(Fits::Quintic(fits), data.layout, Self))
     }

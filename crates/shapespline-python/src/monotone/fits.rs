@@ -12,7 +12,7 @@ use shapespline::monotone::{
 
 use crate::{
     output::{room, zeros},
-    work::{detached, interruptible_many},
+    work::{GoOn, detached, interruptible_many},
 };
 
 /// From so many numbers on, columns are shared out over threads (the size from which `detached` has a pool).
@@ -97,20 +97,25 @@ impl Column<'_> {
     }
 }
 
-/// `count` fits on `size` numbers, in parallel where there is much to do, with a look for Ctrl-C before each; or the
-/// error of one of them and which.
+/// `count` fits on `size` numbers, in parallel where there is much to do, with a look for Ctrl-C before each and inside;
+/// or the error of one of them and which.
 pub(crate) fn fit_all<F: Send>(
     py: Python<'_>,
     size: usize,
     count: usize,
-    one: impl Fn(usize) -> Result<F, MonotoneError> + Send + Sync,
+    one: impl Fn(usize, GoOn<'_>) -> Result<F, MonotoneError> + Send + Sync,
 ) -> PyResult<Result<Vec<F>, (usize, MonotoneError)>> {
-    let fit = |k: usize| one(k).map_err(|error| Some((k, error)));
+    let fit = |k: usize, go_on: GoOn<'_>| {
+        one(k, go_on).map_err(|error| match error {
+            MonotoneError::Interrupted => None,
+            error => Some((k, error)),
+        })
+    };
     let fits: Result<Vec<F>, _> = if size < PARALLEL {
-        py.detach(|| (0..count).map(fit).collect())
+        py.detach(|| (0..count).map(|k| fit(k, &|| ControlFlow::Continue(()))).collect())
     } else {
         interruptible_many(py, |go_on| {
-            let fit = |k| if go_on() == ControlFlow::Break(()) { Err(None) } else { fit(k) };
+            let fit = |k| if go_on() == ControlFlow::Break(()) { Err(None) } else { fit(k, go_on) };
             if count == 1 {
                 // On this thread: what a long fit does itself in parallel finds the pool free.
                 fit(0).map(|f| vec![f])

@@ -24,7 +24,7 @@ use crate::{
     input::{Array, Numbers, Offsets, Query, array, kind, numbers, text},
     options::choose,
     output::{FloatArray, shaped},
-    work::detached,
+    work::{GoOn, detached},
 };
 
 /// Functions of many rows, each with its own knots: the base of `MonotoneRows`.
@@ -614,11 +614,11 @@ pub(crate) fn fit_many_monotone(
     };
     let extrapolate = extrapolate.unwrap_or_default();
     let fits = match kind {
-        Kind::Quintic => Fits::Quintic(fit_rows(py, &bounds, |from, to| {
+        Kind::Quintic => Fits::Quintic(fit_rows(py, &bounds, |from, to, go_on| {
             let options = QuinticOptions { slopes: of(from, to), fairness, extrapolate };
-            monotone::MonotoneQuintic::new(&x[from..to], &y[from..to], &options)
+            monotone::MonotoneQuintic::new_with(&x[from..to], &y[from..to], &options, go_on)
         })?),
-        Kind::Quartic => Fits::Quartic(fit_rows(py, &bounds, |from, to| {
+        Kind::Quartic => Fits::Quartic(fit_rows(py, &bounds, |from, to, _| {
             let slopes = of(from, to);
             let options = QuarticOptions { slopes, shape: shape.clone(), extrapolate };
             monotone::MonotoneQuartic::new(&x[from..to], &y[from..to], &options)
@@ -630,10 +630,10 @@ pub(crate) fn fit_many_monotone(
 fn fit_rows<F: Send>(
     py: Python<'_>,
     bounds: &[usize],
-    fit: impl Fn(usize, usize) -> Result<F, MonotoneError> + Send + Sync,
+    fit: impl Fn(usize, usize, GoOn<'_>) -> Result<F, MonotoneError> + Send + Sync,
 ) -> PyResult<Vec<F>> {
     let (rows, size) = (bounds.len() - 1, bounds[bounds.len() - 1]);
-    fit_all(py, size, rows, |k| fit(bounds[k], bounds[k + 1]))?.map_err(|(row, source)| {
-        monotone_error(&MonotoneError::InRow { row, source: Box::new(source) })
-    })
+    fit_all(py, size, rows, |k, go_on| fit(bounds[k], bounds[k + 1], go_on))?.map_err(
+        |(row, source)| monotone_error(&MonotoneError::InRow { row, source: Box::new(source) }),
+    )
 }

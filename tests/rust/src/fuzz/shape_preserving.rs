@@ -1,0 +1,95 @@
+//! Automatic tension, of every family and strategy.
+
+use shapespline::{geometry::length, prelude::*};
+
+use super::{
+    Bytes,
+    curves::{interpolates, questions},
+    readable,
+};
+
+/// Every shape-preserving constructor. A fit that says it is solved has a clean report, and a check
+/// from scratch agrees with it; one that is not solved says what fails. With default options a search
+/// that doubles tension ends solved.
+pub(super) fn run(data: &[u8]) {
+    let mut bytes = Bytes::new(data);
+    let Some(polygon) = bytes.polygon(20) else { return };
+    let family = bytes.below(3);
+    let strategies = Strategy::NAMED.map(|s| s.1);
+    let strategy = strategies[bytes.below(strategies.len())];
+    let doubling = matches!(strategy, Strategy::Growth | Strategy::Fairest);
+    let (criteria, tolerances) = (bytes.criteria(), bytes.tolerances());
+    let step = match bytes.below(4) {
+        0 => bytes.unscaled(),
+        1 => bytes.fraction(),
+        _ => 0.5,
+    };
+    // Adding a step at a time may need thousands of rounds: cut short, it has to say so.
+    let max_iterations = if doubling { None } else { Some(bytes.below(64)) };
+    let options = SearchOptions { criteria, tolerances, strategy, step, max_iterations };
+    let default = tolerances == Tolerances::default() && criteria == Criteria::ALL && step == 0.5;
+    let solvable = bytes.is_tame() && fits(&polygon) && is_clear(&polygon);
+    let must_solve = default && doubling && solvable;
+    let continuity = if bytes.flag() { Continuity::C1 } else { Continuity::G1 };
+    let safety = if bytes.below(4) == 0 { bytes.unscaled() } else { 0.9 };
+    let mut judged = Judged { bytes: &mut bytes, polygon: &polygon, options: &options, must_solve };
+    match family {
+        0 => judged.judge(NuSpline::shape_preserving(polygon.clone(), &options)),
+        1 => judged.judge(TensionSpline::shape_preserving(polygon.clone(), &options)),
+        _ => {
+            let handles = HandleOptions { criteria, tolerances, safety, continuity };
+            judged.must_solve = default && safety == 0.9 && solvable;
+            judged.judge(CatmullRom::shape_preserving(polygon.clone(), &handles));
+        }
+    }
+}
+
+/// Whether given end tangents are of a size that tension (at most 1e60) can make up for: not those of
+/// another unit altogether.
+fn fits(polygon: &DataPolygon) -> bool {
+    let Some(tangents) = polygon.tangents() else { return true };
+    let last = polygon.segments() - 1;
+    [0, last].iter().zip(tangents).all(|(&i, tangent)| {
+        let longer = length(tangent) * polygon.spacing(i) / length(polygon.chord(i));
+        (1e-20..1e20).contains(&longer)
+    })
+}
+
+/// Whether all that turns and twists does so clearly: where a turn is a few times what counts as zero
+/// (1e−9), margins drown in rounding, and a search may end, honestly, unsolved.
+fn is_clear(polygon: &DataPolygon) -> bool {
+    let d: Vec<DVec3> = (0..polygon.segments()).map(|i| polygon.direction(i)).collect();
+    let clear = |sine: f64| !(1e-12..1e-5).contains(&sine.abs());
+    let n = d.len();
+    (0..n).all(|i| {
+        let [a, b, c] = [d[i], d[(i + 1) % n], d[(i + 2) % n]];
+        clear(a.cross(b).length()) && clear(a.cross(b).dot(c)) && clear(a.cross(b).dot(b.cross(c)))
+    })
+}
+
+struct Judged<'a, 'b> {
+    bytes: &'a mut Bytes<'b>,
+    polygon: &'a DataPolygon,
+    options: &'a SearchOptions,
+    must_solve: bool,
+}
+
+impl Judged<'_, '_> {
+    fn judge<C: Interpolant<Curve: Sized>>(&mut self, made: Result<Fit<C>, FitError>) {
+        let fit = match made {
+            Ok(fit) => fit,
+            Err(error) => return readable(&error),
+        };
+        let status = fit.outcome.diagnostics.status;
+        assert_eq!(status == Status::Solved, fit.report.ok(), "{status:?}\n{}", fit.report);
+        assert_eq!(status == Status::Solved, fit.outcome.faults.is_empty());
+        if self.must_solve {
+            assert_eq!(status, Status::Solved, "{:?}\n{}", self.polygon, fit.report);
+        }
+        interpolates(&fit.curve, self.polygon);
+        questions(fit.curve.curve(), self.bytes);
+        let again = fit.curve.check(self.options.criteria, self.options.tolerances).unwrap();
+        assert_eq!(again.counts, fit.report.counts, "{:?}", self.polygon);
+        assert!(fit.curve.tension().iter().all(|&t| t >= 0.0 && t.is_finite()));
+    }
+}
