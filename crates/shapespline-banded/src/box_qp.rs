@@ -372,6 +372,9 @@ impl ActiveSet<'_, '_> {
     fn guess(&mut self) {
         let p = self.program;
         let n = self.x.len();
+        if n == 0 {
+            return;
+        }
         let clamp = |x: f64, i: usize| {
             let x = if x < p.lower[i] { p.lower[i] } else { x };
             if x > p.upper[i] { p.upper[i] } else { x }
@@ -532,6 +535,14 @@ mod tests {
         };
         let solution = solve(&program).unwrap();
         assert!(solution.solved && solution.iterations <= 15, "{} rounds", solution.iterations);
+    }
+
+    #[test]
+    fn nothing_to_find_is_found() {
+        let [diagonal, off_diagonal, linear, lower, upper] = [&[]; 5];
+        let empty = TridiagonalBoxQp { diagonal, off_diagonal, linear, lower, upper };
+        let solution = solve(&empty).unwrap();
+        assert!(solution.x.is_empty() && solution.solved);
     }
 
     #[test]

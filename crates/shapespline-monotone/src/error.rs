@@ -62,8 +62,8 @@ pub enum MonotoneError {
         /// Its value.
         value: f64,
     },
-    /// A negative shape parameter.
-    #[error("{argument}[{index}] = {value}; shape parameters must be finite and not negative")]
+    /// A shape parameter that is negative, not a number, or so large that its product with a slope overflows.
+    #[error("{argument}[{index}] = {value}; shape parameters must lie in [0, 1e300]")]
     Shape {
         /// The argument.
         argument: &'static str,

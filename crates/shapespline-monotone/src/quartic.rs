@@ -203,8 +203,11 @@ fn check_length(
     }
 }
 
+/// The largest shape parameter: its product with a slope of up to twice the secant must not overflow.
+const LARGEST_SHAPE: f64 = 1e300;
+
 fn check_shape(argument: &'static str, values: &[f64]) -> Result<(), MonotoneError> {
-    match values.iter().position(|v| !(*v >= 0.0 && v.is_finite())) {
+    match values.iter().position(|v| !(0.0..=LARGEST_SHAPE).contains(v)) {
         Some(index) => Err(MonotoneError::Shape { argument, index, value: values[index] }),
         None => Ok(()),
     }

@@ -112,7 +112,7 @@ where
 ///     Slopes at the knots: Fritsch and Butland's harmonic means, or given ones, which are limited to
 ///     0 ≤ d ≤ 2Δ with Δ the smaller neighbouring secant slope.
 /// shape : float or pair of array_like, shape (n - 1,)
-///     Starting value of α = β, or (α, β) of every segment; not negative. They are scaled by the
+///     Starting value of α = β, or (α, β) of every segment; from 0 to 1e300. They are scaled by the
 ///     largest λ in [0, 1] that keeps the segment monotone.
 /// extrapolate : {None, True, False, "linear", "clip"}
 ///     Outside the knots: the end polynomial (None, True), NaN, the tangent line, the end value.
