@@ -237,8 +237,8 @@ pub(crate) fn check(x: &[f64], y: &[f64]) -> Result<f64, MonotoneError> {
         let parts = (0..n.div_ceil(PART)).into_par_iter().map(part);
         parts.reduce(Survey::default, Survey::and)
     };
-    // Four times the spread: room for the coefficients around the values.
-    let fits = |low: f64, high: f64| high / 4.0 - low / 4.0 < f64::MAX / 16.0;
+    // Room for second derivatives: h²f'' of a monotone quintic is up to sixty times the step of y.
+    let fits = |low: f64, high: f64| high / 4.0 - low / 4.0 < f64::MAX / 256.0;
     let spread = (x[n] - x[0]).is_finite() && fits(survey.low, survey.high);
     if survey.finite && survey.increasing && spread {
         return Ok(survey.step);
