@@ -108,7 +108,7 @@ def work(n):
         f(u), f.inverse(f(t[:50])), f.roots(), f.integrate(0, 1)
         function(t[:100], np.tile(t[:100, None], (1, 50)))
 
-sizes = [60, 3000, 20000]
+sizes = [60, 6000, 40000]
 for n in sizes:
     work(n)  # makes the parent's threads
 child = os.fork()

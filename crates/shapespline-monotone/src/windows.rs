@@ -80,7 +80,7 @@ pub(crate) fn optimise(data: &Data, fairness: Fairness, go_on: GoOn<'_>) -> Opti
     };
     let solve_or_stop = |segments| go_on().is_continue().then(|| solve(segments));
     // Few segments cost less than waking threads; and a forked process has none to wake.
-    let windows: Option<Vec<Window>> = if n < 4096 {
+    let windows: Option<Vec<Window>> = if n < 8192 {
         ranges.into_iter().map(solve_or_stop).collect()
     } else {
         ranges.into_par_iter().with_min_len(2).map(solve_or_stop).collect()

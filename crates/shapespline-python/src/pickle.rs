@@ -13,6 +13,7 @@ use crate::{
     curve::{Curve, Family, SpaceCurve},
     diagnostics::Search,
     report::{ShapeReport, Subject},
+    work::detached,
 };
 
 /// Raised whenever the layout changes; bytes of other versions are refused, not guessed at.
@@ -138,14 +139,14 @@ pub(crate) fn _piecewise_from_bytes(
 /// The curve of a pickle.
 #[pyfunction]
 pub(crate) fn _curve_from_bytes(py: Python<'_>, mut data: &[u8]) -> PyResult<Py<PyAny>> {
-    let (curve, search) = read_curve(&mut data)?;
+    let (curve, search) = detached(py, data.len(), || read_curve(&mut data))?;
     SpaceCurve::of(curve, search).into_python(py)
 }
 
 /// The report of a pickle.
 #[pyfunction]
-pub(crate) fn _report_from_bytes(mut data: &[u8]) -> PyResult<ShapeReport> {
-    let subject = read_subject(&mut data)?;
+pub(crate) fn _report_from_bytes(py: Python<'_>, mut data: &[u8]) -> PyResult<ShapeReport> {
+    let subject = detached(py, data.len(), || read_subject(&mut data))?;
     let (report, criteria, tolerances) = take(&mut data)?;
     Ok(ShapeReport::of(report, subject, criteria, tolerances))
 }

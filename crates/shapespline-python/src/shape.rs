@@ -64,18 +64,24 @@ pub(crate) fn _check_shape(
             )));
         }
     };
-    // The parameters first: where the curve closes is asked of it at the first and the last.
-    let open = || {
-        let (points, ends) = (points.clone(), Boundary::ZeroCurvature);
-        DataPolygon::with_dimension(points, dimension, &parametrization, ends).map_err(input_error)
+    let boundary = boundary.map(|ends| ends.of(dimension)).transpose()?;
+    let count = points.len();
+    let make = || {
+        let polygon = |points: Vec<DVec3>, boundary: Boundary| {
+            DataPolygon::with_dimension(points, dimension, &parametrization, boundary)
+        };
+        let boundary = match boundary {
+            Some(boundary) => boundary,
+            None => {
+                // The parameters first: where the curve closes is asked of it at the first and the last.
+                let open = polygon(points.clone(), Boundary::ZeroCurvature)?;
+                let closed = closes_smoothly(&curve, &points, open.parameters());
+                if closed { Boundary::Periodic } else { Boundary::ZeroCurvature }
+            }
+        };
+        polygon(points, boundary)
     };
-    let boundary = match boundary {
-        Some(ends) => ends.of(dimension)?,
-        None if closes_smoothly(&curve, &points, open()?.parameters()) => Boundary::Periodic,
-        None => Boundary::ZeroCurvature,
-    };
-    let polygon = DataPolygon::with_dimension(points, dimension, &parametrization, boundary)
-        .map_err(input_error)?;
+    let polygon = detached(py, count, make).map_err(input_error)?;
     let interpolation = INTERPOLATION.max(tolerances.zero);
     let subject = Subject::Other { polygon: Arc::new(polygon), curve, interpolation };
     ShapeReport::make(py, subject, criteria.0, tolerances)

@@ -12,6 +12,7 @@ use crate::{
     output::{FloatArray, vectors},
     report::{ShapeReport, Subject},
     tangents::Tangents,
+    work::detached,
 };
 
 /// The name of a boundary that has one.
@@ -138,8 +139,11 @@ impl SpaceCurve {
     /// Discrete torsion of the data on each segment, in reciprocal units of the points, shape
     /// (segments,); NaN where there is none. For figures.
     fn _discrete_torsion<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        let polygon = self.curve.polygon().map_err(input_error)?;
-        let torsion = (0..polygon.segments()).map(|i| polygon.discrete_torsion(i)).collect();
+        let of_all = || {
+            let polygon = self.curve.polygon()?;
+            Ok((0..polygon.segments()).map(|i| polygon.discrete_torsion(i)).collect())
+        };
+        let torsion = detached(py, self.curve.cubic().segments(), of_all).map_err(input_error)?;
         Ok(PyArray1::from_vec(py, torsion))
     }
 
