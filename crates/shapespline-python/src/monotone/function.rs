@@ -225,9 +225,14 @@ pub(crate) fn damaged(what: impl std::fmt::Display) -> PyErr {
 }
 
 /// Reads what follows the version.
-pub(crate) fn read<T: serde::de::DeserializeOwned>(data: &[u8]) -> PyResult<T> {
+pub(crate) fn read<T: serde::de::DeserializeOwned + Send>(
+    py: Python<'_>,
+    data: &[u8],
+) -> PyResult<T> {
     match data.split_first() {
-        Some((&VERSION, rest)) => postcard::from_bytes(rest).map_err(damaged),
+        Some((&VERSION, rest)) => {
+            detached(py, data.len(), || postcard::from_bytes(rest)).map_err(damaged)
+        }
         Some((version, _)) => Err(damaged(format!("version {version}"))),
         None => Err(damaged("they are empty")),
     }
@@ -236,7 +241,7 @@ pub(crate) fn read<T: serde::de::DeserializeOwned>(data: &[u8]) -> PyResult<T> {
 /// The function of a pickle.
 #[pyfunction]
 pub(crate) fn _function_from_bytes(py: Python<'_>, data: &[u8]) -> PyResult<Py<PyAny>> {
-    let (layout, fits): (Layout, Fits) = read(data)?;
+    let (layout, fits): (Layout, Fits) = read(py, data)?;
     let sound = fits.is_sound() && fits.len() == layout.columns();
     let first = sound.then(|| fits.column(0));
     let agree = first.is_some_and(|f| {

@@ -460,7 +460,7 @@ impl MonotoneRows {
 /// The rows of a pickle.
 #[pyfunction]
 pub(crate) fn _rows_from_bytes(py: Python<'_>, data: &[u8]) -> PyResult<Py<PyAny>> {
-    let fits: Fits = read(data)?;
+    let fits: Fits = read(py, data)?;
     if !fits.is_sound() {
         return Err(damaged("lengths do not agree"));
     }
