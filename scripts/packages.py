@@ -88,7 +88,10 @@ def try_python(python: Path, package: Path, folder: Path, options: argparse.Name
         shutil.copytree(ROOT / part, folder / part, ignore=left)
     for file in ("pyproject.toml", "README.md"):
         shutil.copy(ROOT / file, folder)
-    command = [own, "-m", "pytest", "-q", "-p", "no:cacheprovider", *options.pytest.split()]
+    # README's links lead to sources, which stay behind.
+    links = ["--deselect", "tests/test_pages.py::test_links_and_pictures_exist"]
+    command = [own, "-m", "pytest", "-q", "-p", "no:cacheprovider", *links]
+    command += options.pytest.split()
     run(*command, cwd=folder, PATH=f"{own.parent}{os.pathsep}{os.environ['PATH']}")
 
 
