@@ -4,6 +4,8 @@
 //! data by dense sampling.
 #![allow(clippy::unwrap_used, reason = "test code")]
 
+use std::ops::ControlFlow;
+
 use shapespline::prelude::*;
 use shapespline_tests::{
     feature_line,
@@ -98,15 +100,41 @@ fn a_monitor_sees_every_step_and_can_stop() {
     let mut seen = 0;
     let fit = NuSpline::shape_preserving_with(helix(6.0), &options(Strategy::Nussp), &mut |_| {
         seen += 1;
-        if seen == 3 {
-            std::ops::ControlFlow::Break(())
-        } else {
-            std::ops::ControlFlow::Continue(())
-        }
+        if seen == 3 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     })
     .unwrap();
     assert_eq!(fit.outcome.diagnostics.status, Status::Interrupted);
     assert_eq!((seen, fit.outcome.history.len()), (3, 3));
+}
+
+/// Points whose coplanar part closed forms do not settle: the search that follows can be stopped, too.
+#[test]
+fn a_monitor_sees_the_search_after_closed_forms() {
+    let points = vec![
+        DVec3::new(0.611, 1.012, 0.0),
+        DVec3::new(-1.084, -0.035, 0.0),
+        DVec3::new(1.128, 0.653, 0.0),
+        DVec3::new(0.231, -0.298, 0.0),
+        DVec3::new(0.814, -1.045, 0.0),
+        DVec3::new(-0.343, 0.432, -0.4),
+    ];
+    let fit = |most: usize| {
+        let polygon =
+            DataPolygon::new(points.clone(), &Parametrization::Uniform, Boundary::ZeroCurvature);
+        let mut seen = 0;
+        CatmullRom::shape_preserving_with(polygon.unwrap(), &HandleOptions::default(), &mut |_| {
+            seen += 1;
+            if seen == most { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        })
+        .unwrap()
+    };
+    let solved = fit(usize::MAX);
+    assert_eq!(solved.outcome.diagnostics.status, Status::Solved);
+    assert!(solved.outcome.history.len() > 2);
+    let stopped = fit(2);
+    assert_eq!(stopped.outcome.diagnostics.status, Status::Interrupted);
+    assert_eq!(stopped.outcome.history.len(), 2);
+    assert!(!stopped.report.ok());
 }
 
 #[test]
