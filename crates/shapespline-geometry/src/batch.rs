@@ -5,7 +5,7 @@ use std::array;
 use glam::DVec3;
 use rayon::prelude::*;
 
-use crate::{Dimension, Domain, PiecewiseCubic, Side, locate::search};
+use crate::{Dimension, Domain, InputError, PiecewiseCubic, Side, locate::search};
 
 /// Parameters whose segments are found before any of them is evaluated.
 const TILE: usize = 64;
@@ -15,6 +15,9 @@ const TILES: usize = 256;
 
 /// Parameters a segment from which the runs of each segment are evaluated together.
 const RUN: usize = 8;
+
+/// Knots that the search from a segment on looks at together.
+const AHEAD: usize = 4;
 
 /// `[1 − t, t]` of the parameters of a tile.
 pub(crate) type Locals = [[f64; 2]; TILE];
@@ -30,20 +33,43 @@ pub(crate) trait Evaluate: Sync {
     /// Derivative of an order on a segment at `[1 − t, t]`.
     fn derivative<const ORDER: usize>(&self, segment: usize, local: [f64; 2]) -> DVec3;
 
-    /// Derivatives of an order at parameters, row by row: the one way to many values.
-    fn values<const ORDER: usize>(&self, u: &[f64], side: Side) -> Vec<f64> {
-        match self.image().dimension() {
-            Dimension::Two => rows::<_, ORDER, 2>(self, u, side),
-            Dimension::Three => rows::<_, ORDER, 3>(self, u, side),
+    /// Derivatives of an order at `[1 − t, t]`s of one segment.
+    fn run<const ORDER: usize, const COLUMNS: usize>(
+        &self,
+        segment: usize,
+        locals: &[[f64; 2]],
+        out: &mut [[f64; COLUMNS]],
+    ) {
+        for (out, &local) in out.iter_mut().zip(locals) {
+            let value = self.derivative::<ORDER>(segment, local).to_array();
+            *out = array::from_fn(|column| value[column]);
         }
     }
+
+    /// Derivatives of an order at parameters, row by row: the one way to many values.
+    fn values<const ORDER: usize>(&self, u: &[f64], side: Side, out: &mut [f64]) {
+        match self.image().dimension() {
+            Dimension::Two => rows::<_, ORDER, 2>(self, u, side, out.as_chunks_mut().0),
+            Dimension::Three => rows::<_, ORDER, 3>(self, u, side, out.as_chunks_mut().0),
+        }
+    }
+}
+
+/// Refuses room that is not for a row a parameter.
+pub(crate) fn check_rows(image: &PiecewiseCubic, u: &[f64], out: &[f64]) -> Result<(), InputError> {
+    let (expected, found) = (u.len() * image.dimension().len(), out.len());
+    if found == expected {
+        return Ok(());
+    }
+    Err(InputError::Length { argument: "out", expected, found, per: "a row for each parameter" })
 }
 
 fn rows<E: Evaluate + ?Sized, const ORDER: usize, const COLUMNS: usize>(
     curve: &E,
     u: &[f64],
     side: Side,
-) -> Vec<f64> {
+    out: &mut [[f64; COLUMNS]],
+) {
     let image = curve.image();
     // A table costs about as much to make as it saves on one query a segment.
     let table = if u.len() >= image.segments().max(64) { image.table() } else { None };
@@ -51,17 +77,31 @@ fn rows<E: Evaluate + ?Sized, const ORDER: usize, const COLUMNS: usize>(
         let value = curve.derivative::<ORDER>(i, local).to_array();
         array::from_fn(|column| value[column])
     };
-    let tile = |hint: &mut usize, u: &[f64]| -> [[f64; COLUMNS]; TILE] {
+    let tile = |hint: &mut usize, (u, out): (&[f64], &mut [[f64; COLUMNS]])| {
         let mut locals = [[0.0; 2]; TILE];
         // Every pair is compared, for a loop that may end early is not done several pairs at once.
         let sorted = u.windows(2).fold(true, |sorted, w| sorted & (w[0] <= w[1]));
-        if sorted {
-            *hint = image.near(*hint, image.wrap(u[0]));
-            if image.knots()[*hint] < u[0] && u[u.len() - 1] < image.knots()[*hint + 1] {
-                // Inside one segment, as fine samples are: what depends on it alone is computed once.
-                let segment = *hint;
-                curve.locals(|_| segment, u, &mut locals);
-                return array::from_fn(|j| row(segment, locals[j]));
+        let (first, last) = (u[0], u[u.len() - 1]);
+        if sorted && side == Side::Right && image.wrap(first) == first && image.wrap(last) == last {
+            *hint = image.near(*hint, first);
+            let ahead = (*hint + u.len() / RUN).min(image.segments());
+            if ahead == image.segments() || last < image.knots()[ahead] {
+                // On few segments, as fine samples are: what depends on one alone is computed once.
+                let mut from = 0;
+                while from < u.len() {
+                    let segment = image.near(*hint, u[from]);
+                    let end = if segment + 1 < image.segments() {
+                        image.knots()[segment + 1]
+                    } else {
+                        f64::INFINITY
+                    };
+                    let run = u[from..].iter().take_while(|&&u| u < end).count().max(1);
+                    let (u, out) = (&u[from..from + run], &mut out[from..from + run]);
+                    curve.locals(|_| segment, u, &mut locals);
+                    curve.run::<ORDER, COLUMNS>(segment, &locals[..run], out);
+                    (*hint, from) = (segment, from + run);
+                }
+                return;
             }
         }
         // First all segments, then all values: what the loops load from memory depends on no branch
@@ -80,33 +120,17 @@ fn rows<E: Evaluate + ?Sized, const ORDER: usize, const COLUMNS: usize>(
             }
         }
         curve.locals(|j| segments[j], &wrapped[..u.len()], &mut locals);
-        if sorted && u.len() == TILE && segments[0].abs_diff(segments[TILE - 1]) <= TILE / RUN {
-            let mut values = [[0.0; COLUMNS]; TILE];
-            let mut from = 0;
-            while from < TILE {
-                let segment = segments[from];
-                let run = segments[from..].iter().take_while(|&&other| other == segment).count();
-                for (value, &local) in values[from..from + run].iter_mut().zip(&locals[from..]) {
-                    *value = row(segment, local);
-                }
-                from += run;
-            }
-            return values;
+        for ((out, &segment), &local) in out.iter_mut().zip(&segments).zip(&locals) {
+            *out = row(segment, local);
         }
-        // The places after the last parameter are on the first segment, and cut off below.
-        array::from_fn(|j| row(segments[j], locals[j]))
     };
-    // Collected, not written to what was zeroed before: clearing fresh memory is a good part of the
-    // time of a simple evaluation.
-    let tiles: Vec<[[f64; COLUMNS]; TILE]> = if u.len() <= 2 * TILE * TILES {
+    if u.len() <= 2 * TILE * TILES {
         let mut hint = 0;
-        u.chunks(TILE).map(|u| tile(&mut hint, u)).collect()
+        u.chunks(TILE).zip(out.chunks_mut(TILE)).for_each(|both| tile(&mut hint, both));
     } else {
-        u.par_chunks(TILE).with_min_len(TILES).map_init(|| 0, tile).collect()
-    };
-    let mut values = tiles.into_flattened().into_flattened();
-    values.truncate(u.len() * COLUMNS);
-    values
+        let both = u.par_chunks(TILE).zip(out.par_chunks_mut(TILE));
+        both.with_min_len(TILES).for_each_init(|| 0, tile);
+    }
 }
 
 impl PiecewiseCubic {
@@ -127,8 +151,12 @@ impl PiecewiseCubic {
         if !(knots[hint] <= u) {
             return search(knots, u, Side::Right);
         }
-        if u < knots[hint + 1] {
-            return hint;
+        // How many of the next knots lie behind, counted: a branch at each would be a guess.
+        if let Some(next) = knots.get(hint + 1..=hint + AHEAD) {
+            let passed = next.iter().filter(|&&knot| knot <= u).count();
+            if passed < AHEAD {
+                return hint + passed;
+            }
         }
         let (mut low, mut step) = (hint, 1);
         loop {

@@ -23,11 +23,27 @@ pub trait Curve: Send + Sync {
     fn evaluate(&self, u: f64, order: usize, side: Side) -> DVec3;
 
     /// Derivatives of order `order` at many parameters, row by row, with as many columns as the curve
-    /// has coordinates.
+    /// has coordinates, into room that the caller has.
+    ///
+    /// # Errors
+    /// An order the curve does not have; room for more or fewer rows.
+    fn evaluate_into(
+        &self,
+        u: &[f64],
+        order: usize,
+        side: Side,
+        out: &mut [f64],
+    ) -> Result<(), InputError>;
+
+    /// [`Self::evaluate_into`] new room.
     ///
     /// # Errors
     /// An order the curve does not have.
-    fn evaluate_many(&self, u: &[f64], order: usize, side: Side) -> Result<Vec<f64>, InputError>;
+    fn evaluate_many(&self, u: &[f64], order: usize, side: Side) -> Result<Vec<f64>, InputError> {
+        let mut out = vec![0.0; u.len() * self.cubic().dimension().len()];
+        self.evaluate_into(u, order, side, &mut out)?;
+        Ok(out)
+    }
 
     /// First, second and third derivatives with respect to `u`.
     fn derivatives(&self, u: f64, side: Side) -> [DVec3; 3] {

@@ -1,13 +1,13 @@
 //! The piecewise cubic curve: the one storage and the one evaluator of all families.
 
-use std::sync::OnceLock;
+use std::{array, sync::OnceLock};
 
 use glam::DVec3;
 use rayon::prelude::*;
 
 use crate::{
     CubicSegment, Curve, DataPolygon, Dimension, InputError, Locator, Side,
-    batch::{Evaluate, Locals},
+    batch::{Evaluate, Locals, check_rows},
     error::check_room,
     locate::search,
     parametrization::check_increasing,
@@ -228,12 +228,19 @@ impl PiecewiseCubic {
     /// there are many); large batches run on all threads.
     #[must_use]
     pub fn evaluate_many(&self, u: &[f64], order: usize, side: Side) -> Vec<f64> {
+        let mut out = vec![0.0; u.len() * self.dimension.len()];
+        self.fill(u, order, side, &mut out);
+        out
+    }
+
+    /// The same into room for a row a parameter.
+    fn fill(&self, u: &[f64], order: usize, side: Side, out: &mut [f64]) {
         match order {
-            0 => self.values::<0>(u, side),
-            1 => self.values::<1>(u, side),
-            2 => self.values::<2>(u, side),
-            3 => self.values::<3>(u, side),
-            _ => self.values::<4>(u, side),
+            0 => self.values::<0>(u, side, out),
+            1 => self.values::<1>(u, side, out),
+            2 => self.values::<2>(u, side, out),
+            3 => self.values::<3>(u, side, out),
+            _ => self.values::<4>(u, side, out),
         }
     }
 
@@ -256,28 +263,41 @@ impl PiecewiseCubic {
         (u - self.knots[i]) / (self.knots[i + 1] - self.knots[i])
     }
 
-    /// Derivative with respect to `u` of a segment at `[1 − t, t]`, as weights of end points and legs.
+    /// Derivative with respect to `u` of a segment at `[1 − t, t]`.
     #[inline(always)]
-    pub(crate) fn derivative_at<const ORDER: usize>(&self, i: usize, [s, t]: [f64; 2]) -> DVec3 {
+    pub(crate) fn derivative_at<const ORDER: usize>(&self, i: usize, local: [f64; 2]) -> DVec3 {
         let (p, q, [a, c]) = (self.points[i], self.points[i + 1], self.legs[i]);
-        if ORDER == 0 {
-            // Exact at both ends, and the same run through backwards.
-            let (ss, tt) = (s * s, t * t);
-            return (p * (ss * (s + 3.0 * t)) + q * (tt * (t + 3.0 * s)))
-                + (a * (3.0 * ss * t) - c * (3.0 * s * tt));
+        let h = self.knots[i + 1] - self.knots[i];
+        let coordinate = |p, q, a, c| coordinate::<ORDER>([p, q, a, c], h, local);
+        DVec3::new(
+            coordinate(p.x, q.x, a.x, c.x),
+            coordinate(p.y, q.y, a.y, c.y),
+            coordinate(p.z, q.z, a.z, c.z),
+        )
+    }
+}
+
+/// One coordinate of a derivative at `[1 − t, t]`, of the end points `p`, `q` and the end legs `a`, `c`, as weights of
+/// them.
+#[inline(always)]
+fn coordinate<const ORDER: usize>([p, q, a, c]: [f64; 4], h: f64, [s, t]: [f64; 2]) -> f64 {
+    if ORDER == 0 {
+        // Exact at both ends, and the same run through backwards.
+        let (ss, tt) = (s * s, t * t);
+        return (p * (ss * (s + 3.0 * t)) + q * (tt * (t + 3.0 * s)))
+            + (a * (3.0 * ss * t) - c * (3.0 * s * tt));
+    }
+    let reciprocal = 1.0 / h;
+    let b = (q - p) - a - c;
+    match ORDER {
+        1 => (a * (s * s) + b * (2.0 * s * t) + c * (t * t)) * (3.0 * reciprocal),
+        2 => ((b - a) * s + (c - b) * t) * (6.0 * reciprocal) * reciprocal,
+        // `t` enters only to hand a NaN on.
+        3 => {
+            let third = (c - b) - (b - a) + 0.0 * t.clamp(-1.0, 1.0);
+            third * (6.0 * reciprocal) * reciprocal * reciprocal
         }
-        let reciprocal = 1.0 / (self.knots[i + 1] - self.knots[i]);
-        let b = (q - p) - a - c;
-        match ORDER {
-            1 => (a * (s * s) + b * (2.0 * s * t) + c * (t * t)) * (3.0 * reciprocal),
-            2 => ((b - a) * s + (c - b) * t) * (6.0 * reciprocal) * reciprocal,
-            3 => {
-                // `t` enters only to hand a NaN on.
-                let third = (c - b) - (b - a) + DVec3::splat(0.0 * t.clamp(-1.0, 1.0));
-                third * (6.0 * reciprocal) * reciprocal * reciprocal
-            }
-            _ => DVec3::splat(0.0 * t.clamp(-1.0, 1.0)),
-        }
+        _ => 0.0 * t.clamp(-1.0, 1.0),
     }
 }
 
@@ -298,6 +318,21 @@ impl Evaluate for PiecewiseCubic {
     fn derivative<const ORDER: usize>(&self, segment: usize, local: [f64; 2]) -> DVec3 {
         self.derivative_at::<ORDER>(segment, local)
     }
+
+    #[inline(always)]
+    fn run<const ORDER: usize, const COLUMNS: usize>(
+        &self,
+        i: usize,
+        locals: &[[f64; 2]],
+        out: &mut [[f64; COLUMNS]],
+    ) {
+        let [p, q] = [self.points[i].to_array(), self.points[i + 1].to_array()];
+        let [a, c] = self.legs[i].map(|leg| leg.to_array());
+        let h = self.knots[i + 1] - self.knots[i];
+        for (out, &local) in out.iter_mut().zip(locals) {
+            *out = array::from_fn(|k| coordinate::<ORDER>([p[k], q[k], a[k], c[k]], h, local));
+        }
+    }
 }
 
 impl Curve for PiecewiseCubic {
@@ -317,8 +352,16 @@ impl Curve for PiecewiseCubic {
         self.evaluate(u, order, side)
     }
 
-    fn evaluate_many(&self, u: &[f64], order: usize, side: Side) -> Result<Vec<f64>, InputError> {
-        Ok(self.evaluate_many(u, order, side))
+    fn evaluate_into(
+        &self,
+        u: &[f64],
+        order: usize,
+        side: Side,
+        out: &mut [f64],
+    ) -> Result<(), InputError> {
+        check_rows(self, u, out)?;
+        self.fill(u, order, side, out);
+        Ok(())
     }
 }
 

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use crate::{
     Curve, InputError, MonotoneCubic, PiecewiseCubic, Side,
-    batch::{Evaluate, Locals},
+    batch::{Evaluate, Locals, check_rows},
     monotone::Batch,
 };
 
@@ -169,18 +169,28 @@ impl Curve for ReparametrizedCubic {
         }
     }
 
-    fn evaluate_many(&self, u: &[f64], order: usize, side: Side) -> Result<Vec<f64>, InputError> {
+    fn evaluate_into(
+        &self,
+        u: &[f64],
+        order: usize,
+        side: Side,
+        out: &mut [f64],
+    ) -> Result<(), InputError> {
+        check_rows(&self.cubic, u, out)?;
         match order {
-            0 => Ok(self.values::<0>(u, side)),
-            1 => Ok(self.values::<1>(u, side)),
-            2 => Ok(self.values::<2>(u, side)),
-            ORDERS => Ok(self.values::<3>(u, side)),
-            _ => Err(InputError::Scalar {
-                argument: "nu",
-                value: order as f64,
-                allowed: "at most 3 in the C² parameter",
-            }),
+            0 => self.values::<0>(u, side, out),
+            1 => self.values::<1>(u, side, out),
+            2 => self.values::<2>(u, side, out),
+            ORDERS => self.values::<3>(u, side, out),
+            _ => {
+                return Err(InputError::Scalar {
+                    argument: "nu",
+                    value: order as f64,
+                    allowed: "at most 3 in the C² parameter",
+                });
+            }
         }
+        Ok(())
     }
 }
 

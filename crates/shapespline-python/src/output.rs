@@ -1,7 +1,7 @@
 //! Results as fresh arrays, without a copy where they are large.
 
 use numpy::{PyArray1, PyArrayDyn, PyArrayMethods};
-use pyo3::{exceptions::PyMemoryError, prelude::*};
+use pyo3::{exceptions::PyMemoryError, prelude::*, sync::PyOnceLock, types::PyTuple};
 use shapespline::geometry::{DVec3, Dimension};
 
 pub(crate) type FloatArray<'py> = Bound<'py, PyArrayDyn<f64>>;
@@ -24,6 +24,22 @@ pub(crate) fn zeros(count: usize, columns: usize) -> PyResult<Vec<f64>> {
 #[inline]
 pub(crate) fn vector(py: Python<'_>, v: DVec3, columns: usize) -> FloatArray<'_> {
     PyArray1::from_slice(py, &v.to_array()[..columns]).to_dyn().clone()
+}
+
+/// A fresh array of a shape, filled in place.
+///
+/// NumPy asks for its memory itself: it has large arrays in huge pages, whose first touch costs a
+/// fraction of what it does in memory that Rust asked for.
+pub(crate) fn filled<'py>(
+    py: Python<'py>,
+    shape: &[usize],
+    fill: impl FnOnce(&mut [f64]) -> PyResult<()>,
+) -> PyResult<FloatArray<'py>> {
+    static EMPTY: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
+    let empty = EMPTY.import(py, "numpy", "empty")?;
+    let array = empty.call1((PyTuple::new(py, shape)?,))?.cast_into::<PyArrayDyn<f64>>()?;
+    fill(array.try_readwrite()?.as_slice_mut()?)?;
+    Ok(array)
 }
 
 /// Values in C order as an array of a shape.

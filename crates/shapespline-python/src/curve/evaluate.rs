@@ -9,7 +9,7 @@ use crate::{
     error::input_error,
     input::Query,
     options,
-    output::{FloatArray, room, shaped, vector},
+    output::{FloatArray, filled, shaped, vector},
     work::detached,
 };
 
@@ -17,23 +17,27 @@ use crate::{
 const BLOCK: usize = 8192;
 
 impl SpaceCurve {
-    /// `COLUMNS` numbers for each parameter, computed from the curve.
-    fn rows<const COLUMNS: usize>(
+    /// `COLUMNS` numbers for each parameter, computed from the curve: an array of a shape.
+    fn rows<'py, const COLUMNS: usize>(
         &self,
-        py: Python<'_>,
+        py: Python<'py>,
         u: &[f64],
+        shape: &[usize],
         of: impl Fn(&dyn Curve, f64) -> [f64; COLUMNS] + Send + Sync,
-    ) -> PyResult<Vec<f64>> {
-        room(u.len(), COLUMNS)?;
+    ) -> PyResult<FloatArray<'py>> {
         let curve = self.curve.as_ref();
-        let rows: Vec<[f64; COLUMNS]> = detached(py, u.len(), || {
-            if u.len() <= BLOCK {
-                u.iter().map(|&u| of(curve, u)).collect()
-            } else {
-                u.par_iter().with_min_len(BLOCK).map(|&u| of(curve, u)).collect()
-            }
-        });
-        Ok(rows.into_flattened())
+        let row = |(row, &u): (&mut [f64; COLUMNS], &f64)| *row = of(curve, u);
+        filled(py, shape, |out| {
+            let rows = out.as_chunks_mut().0;
+            detached(py, u.len(), || {
+                if u.len() <= BLOCK {
+                    rows.iter_mut().zip(u).for_each(row);
+                } else {
+                    rows.par_iter_mut().zip(u).with_min_len(BLOCK).for_each(row);
+                }
+            });
+            Ok(())
+        })
     }
 
     /// A number for each parameter: a float for one, an array of the query's shape for many.
@@ -46,8 +50,8 @@ impl SpaceCurve {
         match u {
             Query::One(u) => of(self.curve.as_ref(), *u).into_bound_py_any(py),
             Query::Many(u) => {
-                let values = self.rows(py, u.values(), |curve, u| [of(curve, u)])?;
-                Ok(shaped(py, values, u.shape())?.into_any())
+                let of = |curve: &dyn Curve, u| [of(curve, u)];
+                Ok(self.rows(py, u.values(), u.shape(), of)?.into_any())
             }
         }
     }
@@ -63,15 +67,12 @@ impl SpaceCurve {
         match u {
             Query::One(u) => Ok(vector(py, of(self.curve.as_ref(), *u), columns)),
             Query::Many(u) => {
-                let values = if columns == 2 {
-                    self.rows(py, u.values(), |curve, u| {
-                        let v = of(curve, u);
-                        [v.x, v.y]
-                    })?
+                let (values, shape) = (u.values(), with_columns(u.shape(), columns));
+                if columns == 2 {
+                    self.rows(py, values, &shape, |curve, u| of(curve, u).truncate().to_array())
                 } else {
-                    self.rows(py, u.values(), |curve, u| of(curve, u).to_array())?
-                };
-                shaped(py, values, &with_columns(u.shape(), columns))
+                    self.rows(py, values, &shape, |curve, u| of(curve, u).to_array())
+                }
             }
         }
     }
@@ -145,13 +146,11 @@ impl SpaceCurve {
                 shaped(py, value, &[columns])
             }
             Query::Many(u) => {
-                let parameters = u.values();
-                room(parameters.len(), columns)?;
-                let values = detached(py, parameters.len(), || {
-                    self.curve.path().evaluate_many(parameters, order, side)
+                let (parameters, path) = (u.values(), self.curve.path());
+                filled(py, &with_columns(u.shape(), columns), |out| {
+                    let work = || path.evaluate_into(parameters, order, side, out);
+                    detached(py, parameters.len(), work).map_err(input_error)
                 })
-                .map_err(input_error)?;
-                shaped(py, values, &with_columns(u.shape(), columns))
             }
         }
     }
