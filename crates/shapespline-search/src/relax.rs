@@ -176,7 +176,7 @@ fn scale<F: TensionFamily>(
     factor: f64,
 ) -> Result<(), F::Error> {
     let changes = scaled(state, nodes, factor);
-    state.set_tension(&changes)
+    state.return_to(&changes)
 }
 
 /// The changes that bring nodes to a factor of their tension, ascending.

@@ -187,7 +187,7 @@ impl<'s, 'p, F: TensionFamily> State<'s, 'p, F> {
     }
 
     /// Sets tensions (ascending by node), solves where that matters, and checks what it touched.
-    pub(crate) fn set_tension(&mut self, changes: &[(usize, f64)]) -> Result<(), F::Error> {
+    fn set_tension(&mut self, changes: &[(usize, f64)]) -> Result<(), F::Error> {
         self.solve(changes)?;
         let touched = &self.touched;
         self.faults.retain(|(i, _)| {
@@ -228,6 +228,13 @@ impl<'s, 'p, F: TensionFamily> State<'s, 'p, F> {
             std::mem::swap(&mut self.unchecked, &mut self.touched);
         }
         Ok(fault.is_none())
+    }
+
+    /// Sets tensions under which the curve is known to have no faults: solved, not checked again.
+    pub(crate) fn return_to(&mut self, changes: &[(usize, f64)]) -> Result<(), F::Error> {
+        self.solve(changes)?;
+        self.touched.clear();
+        Ok(())
     }
 
     /// Sets tensions and finds what has to be checked.
