@@ -4,7 +4,7 @@
 
 use shapespline::criteria::{
     curve_inflections, curve_inflections_from, curve_inflections_with, polygon_inflections,
-    polygon_inflections_with,
+    polygon_inflections_from, polygon_inflections_with,
 };
 use shapespline::geometry::PiecewiseBezier;
 use shapespline::prelude::*;
@@ -247,6 +247,24 @@ fn short_legs_beside_long_ones_count() {
     assert_eq!((most.count, most.exact), (2, false));
     let direction = DVec3::new(0.8943439305295736, 0.0, -0.44738007770229693);
     assert_eq!(curve_inflections_from(&curve, direction).unwrap().count, 2);
+}
+
+/// A direction between two vectors that count as one, 1.4e−14 apart, shows one more, and says that it may not.
+#[test]
+fn a_direction_between_vectors_that_count_as_one_is_uncertain() {
+    let points = [
+        [0.0, -1.0568398565651949, 10.419165331502249],
+        [6.783779659723813, -1.0568398565651949, 10.419165331502249],
+        [-7.199893186846721, -1.0568398565652415, 1.7883573662928186],
+        [-7.19989318684665, -1.056839856565548, 27.92950331883726],
+        [-7.199893186846686, -1.0568398565653948, 14.85893034256504],
+        [10.9128709849699, -16.58655680170921, 14.858930342565067],
+    ];
+    let points = points.map(DVec3::from);
+    let most = polygon_inflections(&points, Dimension::Three).unwrap();
+    let direction = DVec3::new(-5.188553199020691e-14, 0.0, -1.0);
+    let seen = polygon_inflections_from(&points, direction).unwrap();
+    assert!(!seen.exact || seen.count <= most.count, "{most:?} {seen:?}");
 }
 
 #[test]

@@ -93,10 +93,11 @@ pub fn polygon_inflections_from(
 ) -> Result<InflectionCount, InputError> {
     let direction = unit(direction)?;
     let turns = turns(points)?;
-    // Where the polygon hardly turns rounding may have turned the vector further than it leans.
+    // Where the polygon hardly turns rounding may have turned the vector further than it leans; and from
+    // between vectors that count as one (see `sweep`) one of them leans no further than this.
     let told = |(v, error): &(DVec3, f64)| {
         let x = v.dot(direction).abs();
-        x <= ZERO || x > *error
+        x <= ZERO || x > 8.0 * (error + 4.0 * f64::EPSILON)
     };
     let (count, exact) = (changes(&turns, direction), turns.iter().all(told));
     Ok(InflectionCount { count, direction, exact })
