@@ -4,7 +4,7 @@
 
 use shapespline::criteria::{
     curve_inflections, curve_inflections_from, curve_inflections_with, polygon_inflections,
-    polygon_inflections_with,
+    polygon_inflections_from, polygon_inflections_with,
 };
 use shapespline::geometry::PiecewiseBezier;
 use shapespline::prelude::*;
@@ -206,6 +206,65 @@ fn degenerate_curves_have_counts() {
         let control: Vec<DVec3> = p.iter().map(|p| *p * scale).collect();
         assert_eq!(check(&control), check(&p));
     }
+}
+
+/// A plane is one only to rounding: off it by more, someone in the plane sees two inflections.
+#[test]
+fn the_plane_of_a_rational_cubic_is_certain_only_to_rounding() {
+    let tilted = |x: f64, y: f64| DVec3::new(x + 0.3 * y, 0.7 * x - y, 0.2 * x + 0.9 * y);
+    let made = |off: f64| {
+        let mut points =
+            [[0.0, 0.0], [1.0, 2.0], [3.0, 2.0], [4.0, 0.5]].map(|[x, y]| tilted(x, y));
+        points[2] += points[1].cross(points[3]) * off;
+        let weights = [1.0, 0.7, 1.3, 0.9];
+        PiecewiseBezier::rational(vec![0.0, 1.0], &points, &weights, 3, Dimension::Three).unwrap()
+    };
+    let planar = curve_inflections(&made(0.0));
+    assert_eq!((planar.count, planar.exact), (0, true));
+    for k in 10..28 {
+        let off = 10f64.powf(-0.5 * f64::from(k));
+        let most = curve_inflections(&made(off));
+        assert!(!most.exact || most.count == 2, "{off}: {most:?}");
+    }
+}
+
+/// Legs that differ by 1e12 within each piece: what turns by hardly more than rounding is counted, and the
+/// count is no certain one.
+#[test]
+fn short_legs_beside_long_ones_count() {
+    let control = [
+        [-502113374532.69244, -211093308918.89822, 1185351338979.1711],
+        [7.266738882453573e23, -3.659521228893673e23, 1.4336366770318865e24],
+        [-8.218967535290162e35, -1.382236375723607e36, 5.414983656655936e36],
+        [1760906385900.6436, 1788906690881.1018, 3214129854576.3604],
+        [1.1293965056857265e24, 7.889066910828907e23, 2.19974059663099e24],
+        [1.991546501871409e36, -8.44373235674015e35, 4.741405355921164e36],
+    ];
+    let breaks = vec![0.0, 1.0, 2.0];
+    let curve = PiecewiseBezier::new(breaks, &control.map(DVec3::from), 2, Dimension::Three);
+    let curve = curve.unwrap();
+    let most = curve_inflections(&curve);
+    assert_eq!((most.count, most.exact), (2, false));
+    let direction = DVec3::new(0.8943439305295736, 0.0, -0.44738007770229693);
+    assert_eq!(curve_inflections_from(&curve, direction).unwrap().count, 2);
+}
+
+/// A direction between two vectors that count as one, 1.4e−14 apart, shows one more, and says that it may not.
+#[test]
+fn a_direction_between_vectors_that_count_as_one_is_uncertain() {
+    let points = [
+        [0.0, -1.0568398565651949, 10.41916533150225],
+        [6.783779659723813, -1.0568398565651949, 10.41916533150225],
+        [-7.199893186846721, -1.0568398565652415, 1.7883573662928186],
+        [-7.19989318684665, -1.056839856565548, 27.92950331883726],
+        [-7.199893186846686, -1.0568398565653948, 14.85893034256504],
+        [10.9128709849699, -16.58655680170921, 14.858930342565067],
+    ];
+    let points = points.map(DVec3::from);
+    let most = polygon_inflections(&points, Dimension::Three).unwrap();
+    let direction = DVec3::new(-5.188553199020691e-14, 0.0, -1.0);
+    let seen = polygon_inflections_from(&points, direction).unwrap();
+    assert!(!seen.exact || seen.count <= most.count, "{most:?} {seen:?}");
 }
 
 #[test]

@@ -95,6 +95,38 @@ fn a_limit_of_iterations_is_reported_with_the_last_curve() {
     assert_eq!(fit.report, fit.curve.check(Criteria::ALL, Tolerances::default()).unwrap());
 }
 
+/// End tangents of another unit altogether, and a chord that doubles back: the last raise changes the first
+/// legs by a rounding, which turns a verdict.
+#[test]
+fn the_report_of_an_unsolved_search_is_that_of_its_curve() {
+    let points = [
+        [-6.841687647821775e107, -1.1940184634164952e90, 4.808575570305945e109],
+        [-6.832743266956588e107, -4.7438773174639503e107, 4.808575570305945e109],
+        [-6.823798886091309e107, -9.487754635906965e107, 4.8085755771717414e109],
+        [-6.832743266956588e107, -4.74387731746395e107, 4.808575570305945e109],
+        [-6.823798886091309e107, -9.487754635906965e107, 4.8085755771717414e109],
+        [-6.895273670557624e107, -9.487754635906965e107, 4.80857561724651e109],
+        [-6.895273670557625e107, -8.320256351665772e108, 4.8097946605058375e109],
+        [-6.895273670557627e107, -1.5691737239740849e109, 4.811013703765165e109],
+        [-6.895273602143801e107, -1.5691737239740849e109, 1.589986771591517e109],
+        [-6.895273602143801e107, -1.5691743578185954e109, -3.512782740882733e109],
+    ];
+    let start = DVec3::new(2.2685587853818578e89, -5.084458686198215e98, -1.8501564049744413e106);
+    let end = DVec3::new(-7.579003585870146e98, -8.323949034866866e99, 3.95925841153582e93);
+    let polygon = DataPolygon::new(
+        points.map(DVec3::from).to_vec(),
+        &Parametrization::Chordal,
+        Boundary::Tangents { start, end },
+    );
+    let polygon = polygon.unwrap();
+    for limit in 1..60 {
+        let options = SearchOptions { max_iterations: Some(limit), ..options(Strategy::Reduction) };
+        let fit = TensionSpline::shape_preserving(polygon.clone(), &options).unwrap();
+        let (criteria, tolerances) = (options.criteria, options.tolerances);
+        assert_eq!(fit.report, fit.curve.check(criteria, tolerances).unwrap(), "{limit}");
+    }
+}
+
 #[test]
 fn a_monitor_sees_every_step_and_can_stop() {
     let mut seen = 0;

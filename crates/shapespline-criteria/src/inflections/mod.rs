@@ -24,11 +24,11 @@ use glam::DVec3;
 use shapespline_geometry::{Dimension, InputError, PiecewiseBezier, normalize};
 
 use self::{
-    sequence::{STRAIGHT, Sequence},
+    sequence::{NOISE, STRAIGHT, Sequence, lies_in},
     sweep::most,
     walk::Most,
 };
-use crate::general::{Segment, corners};
+use crate::general::{Piece, Segment, corners};
 
 /// Number of inflections, and a direction that shows them.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -93,10 +93,11 @@ pub fn polygon_inflections_from(
 ) -> Result<InflectionCount, InputError> {
     let direction = unit(direction)?;
     let turns = turns(points)?;
-    // Where the polygon hardly turns rounding may have turned the vector further than it leans.
+    // Where the polygon hardly turns rounding may have turned the vector further than it leans; and from
+    // between vectors that count as one (see `sweep`) one of them leans no further than this.
     let told = |(v, error): &(DVec3, f64)| {
         let x = v.dot(direction).abs();
-        x <= ZERO || x > *error
+        x <= ZERO || x > 8.0 * (error + 4.0 * f64::EPSILON)
     };
     let (count, exact) = (changes(&turns, direction), turns.iter().all(told));
     Ok(InflectionCount { count, direction, exact })
@@ -185,14 +186,15 @@ pub fn curve_inflections_with(
         let exact = found.exact && !sequence.open && most.upper <= found.count;
         return Some(InflectionCount { exact, ..found });
     }
+    if let Some(normal) = plane(&segment) {
+        return Some(seen(normal));
+    }
     let mut best = InflectionCount { exact: false, ..NONE };
     // No more values than take a second or so.
     let budget = 4096 / segment.pieces.len();
     let mut steps = 4;
     loop {
-        let bends = bends(&segment, steps);
-        let planar = is_planar(&bends);
-        let sequence = Sequence::of_vectors(bends);
+        let sequence = Sequence::of_vectors(bends(&segment, steps));
         let found = witness(&most(&sequence, go_on)?, &sequence, seen);
         let grown = found.count > best.count;
         if grown || steps == 4 {
@@ -200,7 +202,7 @@ pub fn curve_inflections_with(
             let d = curve.degree();
             let single = segment.pieces.len() == 1 && !curve.is_rational();
             let full = single && found.count >= (2 * d).saturating_sub(4);
-            best = InflectionCount { exact: found.exact && (planar || full), ..found };
+            best = InflectionCount { exact: found.exact && full, ..found };
         }
         steps *= 2;
         if best.exact || (!grown && steps > 16) || steps > budget.max(8) {
@@ -267,10 +269,10 @@ fn seen_from(segment: &Segment, direction: DVec3) -> InflectionCount {
     };
     let mut joints = corners(segment);
     for piece in &segment.pieces {
-        let omega = piece.omega();
-        let (signs, open) = omega.map(1.0, |w| w.dot(direction)).signs();
-        // What is straight but for rounding turns one way and the other.
-        let noise = signs.len() > 1 && omega.bound() <= 1e4 * omega.error();
+        let along = piece.omega().map(1.0, |w| w.dot(direction));
+        let (signs, open) = along.signs();
+        // What is straight but for rounding, or seen from within its plane, turns one way and the other.
+        let noise = !signs.is_empty() && along.bound() <= NOISE * along.error();
         exact &= !open && !noise;
         signs.into_iter().for_each(&mut take);
         if let Some((_, turn, error)) = joints.next() {
@@ -299,6 +301,17 @@ fn bends(segment: &Segment, steps: usize) -> Vec<(DVec3, f64)> {
     bends
 }
 
-fn is_planar(bends: &[(DVec3, f64)]) -> bool {
-    bends.iter().all(|w| w.0.cross(bends[0].0).length() <= 1e-8)
+/// The normal of the plane that the whole curve lies in, if it does to within rounding.
+fn plane(segment: &Segment) -> Option<DVec3> {
+    let omegas: Vec<_> = segment.pieces.iter().map(Piece::omega).collect();
+    let turns = || corners(segment).filter(|(_, turn, error)| turn.length() > error.max(STRAIGHT));
+    // The direction that is known best: the largest in terms of its error.
+    let bends = omegas.iter().flat_map(|o| o.coefficients().iter().map(|c| (*c, o.error())));
+    let known = bends.chain(turns().map(|(_, turn, error)| (turn, error)));
+    let known = known.filter(|(v, error)| v.length() > *error);
+    let best = known.max_by(|a, b| (a.0.length() / a.1).total_cmp(&(b.0.length() / b.1)));
+    let normal = best.map_or(DVec3::Z, |(v, _)| v.normalize());
+    let off =
+        |(_, turn, error): (f64, DVec3, f64)| turn.cross(normal).length() > error.max(STRAIGHT);
+    (omegas.iter().all(|omega| lies_in(omega, normal)) && !turns().any(off)).then_some(normal)
 }

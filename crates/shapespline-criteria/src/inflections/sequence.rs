@@ -9,6 +9,15 @@ use crate::general::{Segment, corners};
 /// Sine of the angle below which directions count as the same, and three points as collinear.
 pub(super) const STRAIGHT: f64 = 1e-9;
 
+/// What is hardly larger than the bound on its rounding error: its sign is not relied on.
+pub(super) const NOISE: f64 = 1e3;
+
+/// Whether a curve of this `ω` lies in the plane of a normal to within rounding: what leaves the plane
+/// is a sign from no direction.
+pub(super) fn lies_in(omega: &Polynomial<DVec3>, normal: DVec3) -> bool {
+    omega.coefficients().iter().all(|c| c.cross(normal).length() <= omega.error())
+}
+
 /// A vector `V` of the sequence. Seen from `w` it has the sign of `w·V`, so that its great circle
 /// `w·V = 0` is where it changes.
 #[derive(Debug, Clone, Copy)]
@@ -115,7 +124,7 @@ impl Sequence {
                 [a, b, c] => [a, b, c],
                 _ => return None,
             };
-            sequence.push_piece(k, legs, velocity.error());
+            sequence.push_piece(k, legs, velocity.error(), &piece.omega());
             if let Some((_, turn, error)) = joints.next() {
                 let size = turn.length();
                 if size > error.max(STRAIGHT) {
@@ -132,11 +141,12 @@ impl Sequence {
         Some(sequence)
     }
 
-    fn push_piece(&mut self, k: usize, legs: [DVec3; 3], error: f64) {
-        let size = legs.iter().fold(0.0f64, |m, v| m.max(v.length()));
-        if size == 0.0 {
+    fn push_piece(&mut self, k: usize, legs: [DVec3; 3], error: f64, seen: &Polynomial<DVec3>) {
+        if seen.bound() <= seen.error() {
+            // Straight: no direction shows a curvature that could change.
             return;
         }
+        let size = legs.iter().fold(0.0f64, |m, v| m.max(v.length()));
         let tangent @ [a, b, c] = legs.map(|v| v / size);
         let error = error / size + f64::EPSILON;
         let omega = [a.cross(b), a.cross(c) * 0.5, b.cross(c)];
@@ -144,16 +154,15 @@ impl Sequence {
         let longest =
             omega.into_iter().fold(omega[0], |m, v| if v.length() > m.length() { v } else { m });
         let length = longest.length();
-        if length <= 1e3 * omega_error {
-            // Straight: no curvature that could change.
-            return;
-        }
+        // Hardly more than straight: rounding decides which way it turns.
+        self.open |= length <= NOISE * omega_error;
         let planar = STRAIGHT * length + 4.0 * omega_error;
         if omega.iter().all(|v| v.cross(longest).length() <= length * planar) {
             let normal = longest / length;
             let along = Polynomial::new(omega.map(|v| v.dot(normal)).to_vec(), omega_error);
             let (signs, open) = along.signs();
-            self.open |= open;
+            // Off its plane by more than rounding, it shows two inflections to someone in the plane.
+            self.open |= open || !lies_in(seen, normal);
             for sign in signs {
                 let v = if sign { normal } else { -normal };
                 self.push_line(v, omega_error / length, [k, k + 1]);

@@ -248,8 +248,8 @@ fn oscillation(checker: &Checker<'_>, i: usize, segment: &Segment) -> Oscillatio
         let along = end_jet(segment, end)[1].normalize_or_zero().dot(normal);
         if along.abs() <= zero { 0.0 } else { along }
     };
-    // Left upwards and arrived at upwards: there is a crossing between.
-    let least = usize::from(side(false) * side(true) > 0.0);
+    // Left upwards and arrived at upwards: there is a crossing between, unless within the tolerance.
+    let least = usize::from(side(false) * side(true) > 0.0).min(crossings);
     Oscillation {
         segment: i,
         crossings,

@@ -44,9 +44,13 @@ pub(super) fn run(data: &[u8]) {
     }
 }
 
-/// Whether given end tangents are of a size that tension (at most 1e60) can make up for: not those of
-/// another unit altogether.
+/// Whether velocities are numbers that leave room for squares, and given end tangents of a size that
+/// tension (at most 1e60) can make up for: not those of another unit altogether.
 fn fits(polygon: &DataPolygon) -> bool {
+    let velocity = |i: usize| length(polygon.chord(i)) / polygon.spacing(i);
+    if !(0..polygon.segments()).all(|i| (1e-120..1e120).contains(&velocity(i))) {
+        return false;
+    }
     let Some(tangents) = polygon.tangents() else { return true };
     let last = polygon.segments() - 1;
     [0, last].iter().zip(tangents).all(|(&i, tangent)| {
