@@ -16,7 +16,14 @@ version = release
 root_doc = "docs/index"
 include_patterns = ["docs/**", "examples/*.ipynb"]
 exclude_patterns = ["docs/performance-table.md"]
-extensions = ["myst_nb", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx.ext.mathjax"]
+# MathJax comes with the pages: formulas are set without a network too.
+extensions = [
+    "myst_nb",
+    "sphinx.ext.autodoc",
+    "sphinx.ext.napoleon",
+    "sphinx.ext.mathjax",
+    "sphinx-mathjax-offline",
+]
 
 # Pages
 
@@ -41,6 +48,9 @@ napoleon_use_ivar = True
 # Looks
 
 html_theme = "furo"
+html_static_path = ["static"]
+html_css_files = ["style.css"]
 html_title = f"shapespline {release}"
 html_copy_source = False
 html_show_sphinx = False
+html_show_copyright = False
