@@ -263,10 +263,10 @@ impl View {
 
     fn relink(&mut self, sequence: &Sequence, link: usize, w: DVec3) {
         let [p, q] = [self.positive[link], self.positive[link + 1]];
+        // Signs are as good as random: nothing branches on whether they differ, but where there are arcs.
         let changes = match sequence.links[link] {
-            _ if p != q => 1,
-            Some(arc) if sequence.arcs[arc].dips(w, p) => 2,
-            _ => 0,
+            Some(arc) if p == q && sequence.arcs[arc].dips(w, p) => 2,
+            _ => u8::from(p != q),
         };
         self.set_link(link, changes);
     }

@@ -134,7 +134,7 @@ impl Walk {
     /// Orders the events along a half circle so that the walk begins, and ends, where nothing is near.
     fn begin_in_the_widest_gap(&mut self, v: DVec3, e1: DVec3) -> DVec3 {
         let events = &mut self.events;
-        events.sort_unstable_by(|a, b| a.at.total_cmp(&b.at));
+        Event::sort(events);
         let n = events.len();
         let gap = |k: usize| match k.checked_sub(1) {
             Some(before) => events[k].at - events[before].at,
@@ -184,7 +184,7 @@ impl Walk {
                 cross_arcs(arc, other, &mut |t, width| meet(t, width, Item::Arc(j)));
             }
         }
-        events.sort_unstable_by(|a, b| a.at.total_cmp(&b.at));
+        Event::sort(events);
         Event::set_beginnings(events);
 
         // On the curve of tangents `w·ω` has one sign but for a double zero: it dips to the other.

@@ -52,6 +52,15 @@ pub(super) struct Event {
 }
 
 impl Event {
+    /// Sorts by place: places alone, for events are long, and each is moved once then.
+    pub(super) fn sort(events: &mut [Self]) {
+        events.sort_by_cached_key(|event| {
+            // The order of `f64::total_cmp`, as a number.
+            let bits = event.at.to_bits().cast_signed();
+            bits ^ ((bits >> 63).cast_unsigned() >> 1).cast_signed()
+        });
+    }
+
     /// Sets where each event or a later one begins; the events are in order.
     pub(super) fn set_beginnings(events: &mut [Self]) {
         let mut begins = f64::INFINITY;
