@@ -63,14 +63,31 @@ impl Units {
         PowerOfTwo::new(-self.ex).scale(x[i + 1] - x[i])
     }
 
+    /// Spacings and secants of the segments between the points given, scaled.
+    #[inline(always)]
+    pub(crate) fn differences(self, x: &[f64], y: &[f64], h: &mut [f64], delta: &mut [f64]) {
+        let (to_x, to_y) = (PowerOfTwo::new(-self.ex), PowerOfTwo::new(-self.ey));
+        let n = h.len();
+        let (x, y, delta) = (&x[..n + 1], &y[..n + 1], &mut delta[..n]);
+        for i in 0..n {
+            h[i] = to_x.scale(x[i + 1] - x[i]);
+            delta[i] = to_y.scale(y[i + 1] - y[i]) / h[i];
+        }
+    }
+
     /// A scaled difference of y in the data's units.
     pub(crate) fn y(self) -> PowerOfTwo {
         PowerOfTwo::new(self.ey)
     }
 
+    /// A scaled slope in the data's units.
+    pub(crate) fn slope(self) -> PowerOfTwo {
+        PowerOfTwo::new(self.ey - self.ex)
+    }
+
     /// Slopes in scaled units to those of the data.
     pub(crate) fn slopes_out(self, d: &mut [f64]) {
-        let unit = PowerOfTwo::new(self.ey - self.ex);
+        let unit = self.slope();
         each(d, |_, d| unit.scale(d));
     }
 
@@ -78,11 +95,6 @@ impl Units {
     pub(crate) fn seconds_out(self, s: &mut [f64]) {
         let (a, b) = (PowerOfTwo::new(self.ey - self.ex), PowerOfTwo::new(-self.ex));
         each(s, |_, s| b.scale(a.scale(s)));
-    }
-
-    /// Differences of y in scaled units to those of the data.
-    pub(crate) fn values_out(self, v: &mut [f64]) {
-        each(v, |_, v| self.y().scale(v));
     }
 
     /// A scaled energy in the data's units: y²/x³ for the bending energy, y² for the parametric one.
@@ -102,16 +114,24 @@ impl Units {
 
 /// As many numbers, made on all threads where there are many.
 pub(crate) fn numbers(n: usize, of: impl Fn(usize) -> f64 + Sync) -> Vec<f64> {
+    /// What one item of the loop makes: items are handed on one by one, which single numbers are too small for.
+    const TILE: usize = 64;
     if n < 2 * PART {
-        (0..n).map(of).collect()
-    } else {
-        (0..n).into_par_iter().with_min_len(PART).map(&of).collect()
+        return (0..n).map(of).collect();
     }
-}
-
-/// A copy.
-pub(crate) fn copy(values: &[f64]) -> Vec<f64> {
-    if values.len() < 2 * PART { values.to_vec() } else { numbers(values.len(), |i| values[i]) }
+    // The places after the last number repeat it, and are cut off below.
+    let tile = |k: usize| -> [f64; TILE] {
+        let from = k * TILE;
+        if from + TILE <= n {
+            std::array::from_fn(|j| of(from + j))
+        } else {
+            std::array::from_fn(|j| of((from + j).min(n - 1)))
+        }
+    };
+    let tiles = (0..n.div_ceil(TILE)).into_par_iter().with_min_len(PART / TILE);
+    let mut numbers = tiles.map(tile).collect::<Vec<_>>().into_flattened();
+    numbers.truncate(n);
+    numbers
 }
 
 /// The first entry with a property (of its index and value).

@@ -1,7 +1,7 @@
 //! The C² monotone quintic: the paper's program, and the fairest over slopes as well.
 
 use crate::MonotoneError;
-use crate::data::{Data, check_finite, copy, first, parts};
+use crate::data::{Data, check_finite, first, parts};
 use crate::energy::{self, Fairness, is_flat};
 use crate::extrapolation::Extrapolation;
 use crate::optimal::coefficients;
@@ -151,7 +151,8 @@ impl MonotoneQuintic {
         };
         diagnostics.certified = certified(&data, &d, &s);
         drop(data);
-        let spline = MonotoneSpline::quintic(units, copy(x), copy(y), d, s, options.extrapolate);
+        let spline =
+            MonotoneSpline::quintic(units, x.to_vec(), y.to_vec(), d, s, options.extrapolate);
         // A second derivative beyond double precision: refuse rather than hand out infinities.
         if let Kind::Quintic { s } = &spline.kind {
             let overflow = |_, v: f64| !v.is_finite();

@@ -28,14 +28,12 @@ impl Record {
         Self { x0, h: x1 - x0, y: [y0, y1], q }
     }
 
-    /// The quartic (3) from end slopes `m = h y'` and `e = ⅔(αm₀ − βm₁)`.
-    #[inline]
-    pub(crate) fn quartic(x0: f64, x1: f64, y0: f64, y1: f64, m: [f64; 2], e: f64) -> Self {
-        let dy = y1 - y0;
+    /// The first three of q for the quartic (3) from Δy, end slopes `m = h y'` and `e = ⅔(αm₀ − βm₁)`; the last is 0.
+    #[inline(always)]
+    pub(crate) fn quartic_form(dy: f64, m: [f64; 2], e: f64) -> [f64; 3] {
         let (p, r) = (dy - m[0], m[1] - dy);
         let middle = -0.25 * (m[0] - m[1] + 1.5 * e);
-        let q = [middle, 0.5 * (r - p), 0.5 * (p + r) - middle, 0.0];
-        Self { x0, h: x1 - x0, y: [y0, y1], q }
+        [middle, 0.5 * (r - p), 0.5 * (p + r) - middle]
     }
 
     #[inline]
@@ -126,7 +124,8 @@ mod tests {
     #[test]
     fn quartic_matches_its_bernstein_form() {
         let (m, e) = ([0.7, 1.9], 0.35);
-        let r = Record::quartic(0.0, 1.0, 2.0, 5.0, m, e);
+        let [q0, q1, q2] = Record::quartic_form(3.0, m, e);
+        let r = Record { x0: 0.0, h: 1.0, y: [2.0, 5.0], q: [q0, q1, q2, 0.0] };
         let b = [2.0, 2.0 + m[0] / 4.0, 3.5 + e / 4.0, 5.0 - m[1] / 4.0, 5.0];
         for k in 0..=20 {
             let t = f64::from(k) / 20.0;

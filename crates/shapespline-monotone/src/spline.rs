@@ -116,27 +116,6 @@ impl MonotoneSpline {
         Self { x, y, d, kind, records, extrapolate, cached: Cached::default() }
     }
 
-    /// Of slopes and `e` in scaled units.
-    pub(crate) fn quartic(
-        units: Units,
-        x: Vec<f64>,
-        y: Vec<f64>,
-        mut d: Vec<f64>,
-        mut e: Vec<f64>,
-        extrapolate: Extrapolation,
-    ) -> Self {
-        let unit = units.y();
-        let records = records(x.len() - 1, |i| {
-            let h = units.spacing(&x, i);
-            let m = [unit.scale(h * d[i]), unit.scale(h * d[i + 1])];
-            Record::quartic(x[i], x[i + 1], y[i], y[i + 1], m, unit.scale(e[i]))
-        });
-        units.slopes_out(&mut d);
-        units.values_out(&mut e);
-        let kind = Kind::Quartic { e };
-        Self { x, y, d, kind, records, extrapolate, cached: Cached::default() }
-    }
-
     /// The abscissae.
     #[must_use]
     pub fn x(&self) -> &[f64] {
