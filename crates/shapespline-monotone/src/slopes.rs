@@ -3,7 +3,7 @@
 //! Everything is in signed, scaled units; decreasing data are the reflection of increasing ones because every
 //! formula here is odd in Δ.
 
-use crate::data::{Data, numbers};
+use crate::data::{Data, parts_mut};
 
 /// The sign of a segment or of the zero slope: −1, 0, 1.
 #[inline]
@@ -59,7 +59,13 @@ pub(crate) fn fritsch_butland(data: &Data) -> Vec<f64> {
         // Two points: the line.
         return vec![delta[0]; 2];
     }
-    let mut d = numbers(n + 1, |i| harmonic(delta[i.max(1) - 1], delta[i.min(n - 1)]));
+    let mut d = vec![0.0; n + 1];
+    parts_mut(&mut d[1..n], |start, d| {
+        let neighbours = delta[start..].iter().zip(&delta[start + 1..]);
+        for (d, (a, b)) in d.iter_mut().zip(neighbours) {
+            *d = harmonic(*a, *b);
+        }
+    });
     d[0] = end(h[0], h[1], delta[0], delta[1]);
     d[n] = end(h[n - 1], h[n - 2], delta[n - 1], delta[n - 2]);
     d

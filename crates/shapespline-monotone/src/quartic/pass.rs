@@ -3,14 +3,12 @@
 use super::Shape;
 use super::scale::{keeps, largest_scale};
 use crate::data::{PowerOfTwo, Units};
-use crate::record::Record;
+use crate::record::{Record, TILE};
 use crate::slopes::{end, harmonic, limit};
 use rayon::prelude::*;
 use std::array;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Segments of a tile.
-const TILE: usize = 64;
 /// Tiles that one thread works through at least; fewer than twice that are no work to share.
 const TILES: usize = 128;
 
@@ -134,7 +132,7 @@ impl Pass<'_> {
                 d[j] = limit(self.scaled(given[start + j]), delta[j], delta[j + 1]);
             }
         } else {
-            for j in 0..=n {
+            for j in 0..n + 1 {
                 d[j] = harmonic(delta[j], delta[j + 1]);
             }
             if start == 0 {
@@ -144,19 +142,24 @@ impl Pass<'_> {
                 d[n] = self.end_slope(all);
             }
         }
-        let mut full = [0.0; TILE];
-        self.scales(start, n, &d, &delta, scale, &mut full);
+        let (mut lambda, mut full) = ([1.0; TILE], [0.0; TILE]);
+        self.scales(start, n, &d, &delta, &mut lambda, &mut full);
         // In the data's units.
         let (unit, slope) = (self.units.y(), self.units.slope());
         let (mut q0, mut q1, mut q2) = ([0.0; TILE], [0.0; TILE], [0.0; TILE]);
+        // What is the tile's own cannot overlap, which would have to be asked in every loop.
+        let (mut step, mut e) = ([0.0; TILE], [0.0; TILE]);
+        step[..n].iter_mut().zip(y.windows(2)).for_each(|(step, y)| *step = y[1] - y[0]);
         for j in 0..n {
             let (secant, h) = (delta[j + 1], h[j + 1]);
-            d_out[j] = slope.scale(d[j]);
             // Flat segments have slopes and e of zero, and a λ of one, as they are.
-            e_out[j] = unit.scale(scale[j] * full[j] * (secant * h));
+            e[j] = unit.scale(lambda[j] * full[j] * (secant * h));
             let m = [unit.scale(h * d[j]), unit.scale(h * d[j + 1])];
-            [q0[j], q1[j], q2[j]] = Record::quartic_form(y[j + 1] - y[j], m, e_out[j]);
+            [q0[j], q1[j], q2[j]] = Record::quartic_form(step[j], m, e[j]);
         }
+        d_out.iter_mut().zip(&d).for_each(|(out, d)| *out = slope.scale(*d));
+        e_out.copy_from_slice(&e[..n]);
+        scale.copy_from_slice(&lambda[..n]);
         sound &= d_out.iter().fold(true, |all, d| all & d.is_finite());
         let records = array::from_fn(|j| {
             if j >= n {
@@ -176,7 +179,7 @@ impl Pass<'_> {
         n: usize,
         d: &[f64; TILE + 1],
         delta: &[f64; TILE + 2],
-        scale: &mut [f64],
+        lambda: &mut [f64; TILE],
         full: &mut [f64; TILE],
     ) {
         let (mut m0, mut m1) = ([0.0; TILE], [0.0; TILE]);
@@ -200,17 +203,16 @@ impl Pass<'_> {
             failing[count] = j;
             count += usize::from(!keeps(m0[j], m1[j], full[j]));
         }
-        scale.fill(1.0);
         // Side by side first: several are solved at once.
         let (mut a, mut b, mut e) = ([0.0; TILE], [0.0; TILE], [0.0; TILE]);
         for (k, &j) in failing[..count].iter().enumerate() {
             (a[k], b[k], e[k]) = (m0[j], m1[j], full[j]);
         }
-        for k in 0..count {
-            e[k] = largest_scale(a[k], b[k], e[k]);
+        for (e, (a, b)) in e[..count].iter_mut().zip(a[..count].iter().zip(&b[..count])) {
+            *e = largest_scale(*a, *b, *e);
         }
         for (k, &j) in failing[..count].iter().enumerate() {
-            scale[j] = e[k];
+            lambda[j] = e[k];
         }
     }
 }

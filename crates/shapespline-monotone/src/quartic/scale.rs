@@ -36,12 +36,13 @@ pub(super) fn largest_scale(a: f64, d: f64, full: f64) -> f64 {
     // now within 0.5 %, whatever a and d, and three of Newton's steps make that less than rounding.
     let inverse = 1.0 / d;
     let bound = 1.0 / (1.0 + (1.0 + (k + a) * inverse).sqrt());
-    let mut sigma = 1.0 + (1.0 + (k + a * bound * (2.0 - bound)) * inverse).sqrt();
-    for _ in 0..3 {
+    let start = 1.0 + (1.0 + (k + a * bound * (2.0 - bound)) * inverse).sqrt();
+    let newton = |sigma: f64| {
         let value = ((d * sigma - 2.0 * d) * sigma - k) * (sigma * sigma) - a * (2.0 * sigma - 1.0);
         let slope = ((4.0 * d * sigma - 6.0 * d) * sigma - 2.0 * k) * sigma - 2.0 * a;
-        sigma -= value / slope;
-    }
+        sigma - value / slope
+    };
+    let sigma = newton(newton(newton(start)));
     let least = room + (2.0 * d * sigma - a / (sigma * sigma)) / 3.0;
     // Case 3 (D = 0): C ≥ 0 itself is necessary. So it is for a D that is nothing beside the other numbers.
     let least = if d < 1e-300 { room } else { least };
