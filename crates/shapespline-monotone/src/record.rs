@@ -36,6 +36,24 @@ impl Record {
         [middle, 0.5 * (r - p), 0.5 * (p + r) - middle]
     }
 
+    /// The records of a tile between points, from their q number by number; those after the last are of no meaning.
+    #[inline(always)]
+    pub(crate) fn assembled(x: &[f64], y: &[f64], q: &[[f64; TILE]; 4]) -> [Self; TILE] {
+        let mut records = [Self::default(); TILE];
+        let points = x.windows(2).zip(y.windows(2));
+        // Number by number: a record that is made first and moved then is read before it is written out.
+        for (j, (record, (x, y))) in records.iter_mut().zip(points).enumerate() {
+            record.x0 = x[0];
+            record.h = x[1] - x[0];
+            record.y[0] = y[0];
+            record.y[1] = y[1];
+            for k in 0..4 {
+                record.q[k] = q[k][j];
+            }
+        }
+        records
+    }
+
     #[inline]
     pub(crate) fn local(&self, x: f64) -> f64 {
         (x - self.x0) / self.h

@@ -124,7 +124,8 @@ pub fn optimal_program(
 
 /// The free unknowns that minimise. In the unknowns `w = Lᵀv + L⁻¹q`, P = LLᵀ, the energy is ½|w|²: SLSQP begins with
 /// the identity in place of the Hessian, which then is the Hessian, and its first quadratic program is the whole one. In
-/// v itself it creeps along the valleys of P and stops a twentieth of a per cent too high.
+/// v itself it creeps along the valleys of P and stops a twentieth of a per cent too high; here it agrees with Clarabel to
+/// 1e-11.
 fn least(program: &Quadratic, free: &[usize], start: &[f64]) -> Vec<f64> {
     let n = free.len();
     if n == 0 {
@@ -172,7 +173,8 @@ fn least(program: &Quadratic, free: &[usize], start: &[f64]) -> Vec<f64> {
     };
     let mut solver = Nlopt::new(Algorithm::Slsqp, n, objective, Target::Minimize, ());
     for (a, b) in &rows {
-        let condition = |w: &[f64], gradient: Option<&mut [f64]>, (): &mut ()| {
+        // Moved: the solver keeps it beyond this turn of the loop, which the crate's signature does not say.
+        let condition = move |w: &[f64], gradient: Option<&mut [f64]>, (): &mut ()| {
             if let Some(gradient) = gradient {
                 gradient.iter_mut().zip(a).for_each(|(g, a)| *g = -a);
             }
@@ -268,7 +270,6 @@ mod tests {
     #[test]
     fn the_optimal_program_agrees_with_clarabel() {
         let mut next = generator();
-        let mut worst = 0.0f64;
         for case in 0..40 {
             let (x, y) = random(&mut next, case);
             let data = Data::new(&x, &y).unwrap();
@@ -280,14 +281,12 @@ mod tests {
                     let (_, _, found) = optimal_program(&x, &y, fairness, level).unwrap();
                     let off = (found - theirs).abs() / theirs;
                     assert!(off <= 1e-8, "case {case} level {level}: {found} {theirs} {off:e}");
-                    worst = worst.max(off);
                 }
             }
         }
-        println!("{worst:e}");
     }
 
-    /// On the data the paper takes from Akima and Fritsch and Carlson's RPN 14: the values of the specification.
+    /// On Fritsch and Carlson's RPN 14: the values of the specification.
     #[test]
     fn the_optimal_program_on_rpn14() {
         let x = [7.99, 8.09, 8.19, 8.7, 9.2, 10.0, 12.0, 15.0, 20.0];

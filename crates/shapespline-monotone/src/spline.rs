@@ -218,11 +218,5 @@ fn quintic_records(
         let k = [unit.scale(h * (h * s[j])), unit.scale(h * (h * s[j + 1]))];
         [q[0][j], q[1][j], q[2][j], q[3][j]] = Record::hermite_form(y[j + 1] - y[j], m, k);
     }
-    std::array::from_fn(|j| {
-        if j >= n {
-            return Record::default();
-        }
-        let q = [q[0][j], q[1][j], q[2][j], q[3][j]];
-        Record { x0: x[j], h: x[j + 1] - x[j], y: [y[j], y[j + 1]], q }
-    })
+    Record::assembled(x, y, &q)
 }

@@ -6,7 +6,6 @@ use crate::data::{PowerOfTwo, Units};
 use crate::record::{Record, TILE};
 use crate::slopes::{end, harmonic, limit};
 use rayon::prelude::*;
-use std::array;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Tiles that one thread works through at least; fewer than twice that are no work to share.
@@ -32,12 +31,15 @@ pub(super) struct Made {
     pub(super) sound: bool,
 }
 
+/// A tile's own numbers of d, e and λ.
+type Parts<'a> = ((&'a mut [f64], &'a mut [f64]), &'a mut [f64]);
+
 impl Pass<'_> {
     pub(super) fn make(&self) -> Made {
         let n = self.x.len() - 1;
         let (mut d, mut e, mut scale) = (vec![0.0; n + 1], vec![0.0; n], vec![0.0; n]);
         let sound = AtomicBool::new(true);
-        let work = |(tile, ((d, e), scale)): (usize, ((&mut [f64], &mut [f64]), &mut [f64]))| {
+        let work = |(tile, ((d, e), scale)): (usize, Parts<'_>)| {
             let start = tile * TILE;
             // A length that is known beforehand: nearly all tiles are full.
             let (records, fine) = if d.len() == TILE {
@@ -161,14 +163,8 @@ impl Pass<'_> {
         e_out.copy_from_slice(&e[..n]);
         scale.copy_from_slice(&lambda[..n]);
         sound &= d_out.iter().fold(true, |all, d| all & d.is_finite());
-        let records = array::from_fn(|j| {
-            if j >= n {
-                return Record::default();
-            }
-            let q = [q0[j], q1[j], q2[j], 0.0];
-            Record { x0: x[j], h: x[j + 1] - x[j], y: [y[j], y[j + 1]], q }
-        });
-        (records, sound)
+        let q = [q0, q1, q2, [0.0; TILE]];
+        (Record::assembled(x, y, &q), sound)
     }
 
     /// λ, and the full e in units of the secant; `delta[j + 1]` belongs to segment j of the tile.

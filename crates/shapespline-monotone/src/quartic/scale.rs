@@ -19,7 +19,7 @@ pub(super) fn keeps(a: f64, d: f64, full: f64) -> bool {
 /// coefficients a, 3B, 3C, d in powers of s it is `d(s − σ)²(s + a/(dσ²))`. Hence `3C = a/σ² − 2dσ`, and B + C =
 /// 4 − a − d = K leaves `dσ⁴ − 2dσ³ − 3Kσ² − 2aσ + a = 0`. Its signs + − − − + allow two positive roots, and at 1 it is
 /// negative: one root below 1 (where the other coefficient fails, by symmetry the same case) and one above, which is
-/// wanted. There the quartic rises and is convex, so that Newton's iteration finds it and no other. Φ of theorem 1 is
+/// wanted. There the quartic rises and is convex: from close by Halley's iteration finds it and no other. Φ of theorem 1 is
 /// the discriminant of the same cubic, with roots that mean nothing besides.
 #[inline(always)]
 pub(super) fn largest_scale(a: f64, d: f64, full: f64) -> f64 {
@@ -33,17 +33,18 @@ pub(super) fn largest_scale(a: f64, d: f64, full: f64) -> f64 {
     let k = if k > 0.0 { 3.0 * k } else { 0.0 };
     let (a, d) = (near, far);
     // σ(σ − 2) = (3K + 2a/σ − a/σ²)/d ≤ (3K + a)/d, for the root is at least 2; and once more with the bound inserted:
-    // now within 0.5 %, whatever a and d, and three of Newton's steps make that less than rounding.
+    // now within 0.5 %, whatever a and d, and two steps of third order make that less than rounding.
     let inverse = 1.0 / d;
     let bound = 1.0 / (1.0 + (1.0 + (k + a) * inverse).sqrt());
     let start = 1.0 + (1.0 + (k + a * bound * (2.0 - bound)) * inverse).sqrt();
-    let newton = |sigma: f64| {
+    let halley = |sigma: f64| {
         let value = ((d * sigma - 2.0 * d) * sigma - k) * (sigma * sigma) - a * (2.0 * sigma - 1.0);
         let slope = ((4.0 * d * sigma - 6.0 * d) * sigma - 2.0 * k) * sigma - 2.0 * a;
-        sigma - value / slope
+        let half_bend = (6.0 * d * sigma - 6.0 * d) * sigma - k;
+        sigma - value * slope / (slope * slope - value * half_bend)
     };
-    let sigma = newton(newton(newton(start)));
-    let least = room + (2.0 * d * sigma - a / (sigma * sigma)) / 3.0;
+    let sigma = halley(halley(start));
+    let least = room + (2.0 * d * sigma - a / (sigma * sigma)) * (1.0 / 3.0);
     // Case 3 (D = 0): C ≥ 0 itself is necessary. So it is for a D that is nothing beside the other numbers.
     let least = if d < 1e-300 { room } else { least };
     let lambda = least * INSIDE / full;

@@ -1,7 +1,5 @@
 //! Many data sets with their own x in one call: `fit_many_monotone`.
 
-use std::sync::Arc;
-
 use pyo3::{
     exceptions::{PyTypeError, PyValueError},
     prelude::*,

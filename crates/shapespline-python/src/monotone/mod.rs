@@ -1,3 +1,4 @@
+//! Monotone interpolation in Python.
 //!
 //! [`function`] is what every function can do, [`spline`] what the interpolants add, [`families`] their
 //! constructors; [`layout`] brings arrays with an axis to columns and back. [`rows`] are many functions, each with knots
