@@ -7,96 +7,24 @@ is no error.
 """
 
 import argparse
-import gc
 import os
 import platform
 import subprocess
 import sys
-import time
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator
 from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
 import scipy
-from scipy.interpolate import CubicSpline, PchipInterpolator, make_interp_spline
+from measuring import Line, at_most, best, faster, within
+from monotone import monotone_building, monotone_evaluating, monotone_small
+from scipy.interpolate import CubicSpline, make_interp_spline
 
 import shapespline as ss
 
 sys.path.insert(0, str(Path(__file__).parent.parent))
 import polygons
-
-
-@dataclass(frozen=True)
-class Line:
-    """One line of the table; ``better`` says which way the ratio must go."""
-
-    what: str
-    ours: str
-    theirs: str
-    ratio: float | None
-    target: str
-    met: bool
-
-    def __str__(self) -> str:
-        ratio = "" if self.ratio is None else f"{self.ratio:.2f}"
-        met = "yes" if self.met else "NO"
-        return f"{self.what:<56}{self.ours:>11}{self.theirs:>11}{ratio:>8}  {self.target:<11}{met}"
-
-    def markdown(self) -> str:
-        """Return the line as a row of a table in Markdown."""
-        ratio = "" if self.ratio is None else f"{self.ratio:.2f}"
-        cells = (self.what, self.ours, self.theirs, ratio, self.target, "yes" if self.met else "no")
-        return "| " + " | ".join(cells) + " |"
-
-
-def seconds(value: float) -> str:
-    """Return a time with a unit that suits it."""
-    for unit, size in (("s", 1.0), ("ms", 1e-3), ("µs", 1e-6)):
-        if value >= size:
-            return f"{value / size:.3g} {unit}"
-    return f"{value / 1e-9:.3g} ns"
-
-
-def best(*calls: Callable[[], object], budget: float = 2.0) -> list[float]:
-    """Return the shortest time of each call, measured in turns until the budget is spent.
-
-    The shortest, because everything else that runs on the machine only adds; in turns, because a
-    slow spell must not fall on one side alone. Short calls are repeated within a measurement.
-    """
-    repeats = []
-    for call in calls:
-        start = time.perf_counter()
-        call()
-        once = time.perf_counter() - start
-        repeats.append(max(1, min(10_000, int(0.005 / max(once, 1e-7)))))
-    shortest = [np.inf] * len(calls)
-    end = time.perf_counter() + budget * len(calls)
-    rounds = 0
-    gc.disable()
-    try:
-        while rounds < 3 or time.perf_counter() < end:
-            for i, call in enumerate(calls):
-                start = time.perf_counter()
-                for _ in range(repeats[i]):
-                    call()
-                shortest[i] = min(shortest[i], (time.perf_counter() - start) / repeats[i])
-            rounds += 1
-    finally:
-        gc.enable()
-    return shortest
-
-
-def faster(what: str, ours: float, theirs: float, least: float) -> Line:
-    """Return the line for a speed-up that must reach ``least``."""
-    ratio = theirs / ours
-    return Line(what, seconds(ours), seconds(theirs), ratio, f"≥ {least:g}×", ratio >= least)
-
-
-def within(what: str, ours: float, limit: float) -> Line:
-    """Return the line for a time that must stay within a limit."""
-    return Line(what, seconds(ours), "", None, f"≤ {seconds(limit)}", ours <= limit)
 
 
 def building(sizes: list[int]) -> Iterator[Line]:
@@ -169,12 +97,6 @@ def importing() -> Iterator[Line]:
     yield within("import, after import numpy", min(float(run.stdout) for run in runs), 60e-3)
 
 
-def at_most(what: str, ours: float, theirs: float, most: float, unit: str = "ν") -> Line:
-    """Return the line for a cost, relative to another one, that must not exceed ``most``."""
-    ratio = ours / theirs
-    return Line(what, seconds(ours), seconds(theirs), ratio, f"≤ {most:g}× {unit}", ratio <= most)
-
-
 def families(sizes: list[int], queries: int) -> Iterator[Line]:
     """Compare tension cubics and Catmull–Rom curves to ν-splines and to SciPy."""
     for count in sizes:
@@ -230,79 +152,6 @@ def collections() -> Iterator[Line]:
         )
         for method, time_taken in zip(methods, ours, strict=True):
             yield faster(f"fit_many, {method}, 300 {name}", time_taken, theirs, 20.0)
-
-
-def rising(rng: np.random.Generator, *shape: int) -> np.ndarray:
-    """Return increasing numbers along the first axis, their steps uniform."""
-    return np.cumsum(rng.random(shape), axis=0)
-
-
-def monotone_building(count: int) -> Iterator[Line]:
-    """Compare building monotone interpolants to SciPy's PCHIP, which is C¹ only."""
-    rng = np.random.default_rng(1)
-    x, y = rising(rng, count) + 0.1 * np.arange(count), rising(rng, count)
-    quartic, paper, best_one, pchip = best(
-        lambda: ss.MonotoneQuartic(x, y),
-        lambda: ss.MonotoneQuintic(x, y, slopes="fritsch-butland"),
-        lambda: ss.MonotoneQuintic(x, y),
-        lambda: PchipInterpolator(x, y),
-    )
-    yield faster(f"MonotoneQuartic build, N = {count:g}", quartic, pchip, 3.0)
-    what = "MonotoneQuintic build"
-    yield faster(f"{what}, Fritsch–Butland slopes, N = {count:g}", paper, pchip, 1.0)
-    yield at_most(f"{what}, optimal slopes, N = {count:g}", best_one, pchip, 25.0, "PCHIP")
-
-
-def monotone_evaluating(sizes: list[int], queries: int) -> Iterator[Line]:
-    """Compare values of the quintic to PCHIP's, and its inverse to its values."""
-    rng = np.random.default_rng(1)
-    for count in sizes:
-        x, y = rising(rng, count) + 0.1 * np.arange(count), rising(rng, count)
-        quintic = ss.MonotoneQuintic(x, y, slopes="fritsch-butland")
-        pchip = PchipInterpolator(x, y)
-        u = rng.uniform(x[0], x[-1], queries)
-        for order, query in (("sorted", np.sort(u)), ("unsorted", u)):
-            levels = quintic(query)
-            ours, theirs, inverse = best(
-                lambda f=quintic, q=query: f(q),
-                lambda f=pchip, q=query: f(q),
-                lambda f=quintic, v=levels: f.inverse(v),
-            )
-            what = f"at {queries:g} {order}, N = {count:g}"
-            yield faster(f"evaluate quintic {what}", ours, theirs, 3.0)
-            yield at_most(f"inverse of quintic {what}", inverse, ours, 5.0, "values")
-
-
-def monotone_small() -> Iterator[Line]:
-    """Measure small monotone fits, one scalar call, and many columns in one call."""
-    rng = np.random.default_rng(1)
-    for count in (4, 20):
-        x, y = np.arange(float(count)), np.cumsum(rng.exponential(size=count))
-        quintic = ss.MonotoneQuintic(x, y)
-        paper, optimal, call = best(
-            lambda x=x, y=y: ss.MonotoneQuintic(x, y, slopes="fritsch-butland"),
-            lambda x=x, y=y: ss.MonotoneQuintic(x, y),
-            lambda f=quintic: f(1.5),
-            budget=0.5,
-        )
-        yield within(f"one quintic, Fritsch–Butland slopes, N = {count}", paper, 15e-6)
-        yield within(f"one quintic, optimal slopes, N = {count}", optimal, 40e-6)
-    yield within("one scalar call of a quintic", call, 2e-6)
-    x, columns = np.arange(20.0), rising(rng, 20, 10_000)
-    rows = np.ascontiguousarray(columns.T)
-
-    def loop():
-        for row in rows:
-            PchipInterpolator(x, row)
-
-    paper, optimal, pchip = best(
-        lambda: ss.MonotoneQuintic(x, columns, slopes="fritsch-butland"),
-        lambda: ss.MonotoneQuintic(x, columns),
-        loop,
-    )
-    what = "10,000 columns of 20 points"
-    yield faster(f"{what}, Fritsch–Butland slopes", paper, pchip, 50.0)
-    yield faster(f"{what}, optimal slopes", optimal, pchip, 15.0)
 
 
 # The peak of a process is one number, so each fit runs in one of its own. What the interpreter,

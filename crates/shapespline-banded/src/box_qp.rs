@@ -13,14 +13,18 @@
 // Negated comparisons are meant: they catch NaN as well.
 #![allow(clippy::neg_cmp_op_on_partial_ord)]
 
+mod active_set;
+mod guess;
+#[cfg(test)]
+mod tests;
+
+use active_set::ActiveSet;
 use thiserror::Error;
 
+/// Rows that are looked at together, without a branch: which bounds are active cannot be predicted.
+const BLOCK: usize = 64;
 /// Rounds without progress after which block moves give way to projected Gauss–Seidel sweeps.
 pub const PATIENCE: usize = 10;
-/// Sweeps of the first guess.
-const GUESSES: usize = 2;
-/// Sweeps of a safeguard phase. Each sweep contracts the error by the matrix's diagonal dominance.
-const SWEEPS: usize = 40;
 /// Safeguard phases before the best iterate is returned with its residual.
 const PHASES: usize = 25;
 
@@ -202,388 +206,76 @@ fn gradient(program: &TridiagonalBoxQp<'_>, x: &[f64], i: usize) -> (f64, f64) {
 #[must_use]
 pub fn kkt_residual(program: &TridiagonalBoxQp<'_>, x: &[f64]) -> f64 {
     let mut worst = 0.0f64;
-    for i in 0..x.len() {
-        let (g, size) = gradient(program, x, i);
-        // Selections, not branches: which bounds are active cannot be predicted.
-        let (low, high) = (x[i] <= program.lower[i], x[i] >= program.upper[i]);
-        let down = if low { 0.0 } else { g };
-        let up = if high { 0.0 } else { -g };
-        let violation = if down > up { down } else { up };
-        // Divided only where it counts.
-        if violation > worst * size {
-            worst = violation / size;
+    for from in (0..x.len()).step_by(BLOCK) {
+        let rows = from..x.len().min(from + BLOCK);
+        // Nearly all blocks are below what was found before, and need no division.
+        if let Some(block) = Block::of(program, x, from) {
+            let below = (0..BLOCK).fold(true, |all, k| {
+                let (g, size) = block.gradient(k);
+                all & (open(g, block.x[k], block.lower[k], block.upper[k]) <= worst * size)
+            });
+            if below {
+                continue;
+            }
+        }
+        for i in rows {
+            let (g, size) = gradient(program, x, i);
+            let violation = open(g, x[i], program.lower[i], program.upper[i]);
+            if violation > worst * size {
+                worst = violation / size;
+            }
         }
     }
     worst
 }
 
-struct ActiveSet<'a, 'b> {
-    program: &'a TridiagonalBoxQp<'b>,
-    x: Vec<f64>,
-    place: Vec<Place>,
-    work: Vec<f64>,
+/// The part of a gradient in the direction that the bounds leave open.
+#[inline(always)]
+fn open(g: f64, x: f64, lower: f64, upper: f64) -> f64 {
+    let down = if x <= lower { 0.0 } else { g };
+    let up = if x >= upper { 0.0 } else { -g };
+    if down > up { down } else { up }
 }
 
-impl ActiveSet<'_, '_> {
-    /// Rounds of block moves until nothing contradicts the guess (true) or patience is used up (false).
-    fn pivot(&mut self, patience: usize) -> Result<(usize, bool), BoxQpError> {
-        let n = self.x.len();
-        for i in 0..n {
-            self.pin(i);
-        }
-        let mut changed = Vec::new();
-        self.solve_between(0, n)?;
-        self.contradictions(0, n, &mut changed);
-        let (mut rounds, mut best, mut left) = (1, usize::MAX, patience);
-        let mut next = Vec::new();
-        while !changed.is_empty() {
-            if changed.len() < best {
-                best = changed.len();
-                left = patience;
-            } else if left == 0 {
-                return Ok((rounds, false));
-            } else {
-                left -= 1;
-            }
-            // All moves first: a stretch may contain several.
-            for &(i, place) in &changed {
-                self.place[i] = place;
-                self.pin(i);
-            }
-            next.clear();
-            let mut done = 0;
-            for &(i, _) in &changed {
-                if i < done {
-                    continue;
-                }
-                // The solution changes between the nearest active variables on either side and their multipliers.
-                let mut from = i;
-                while from > done && self.place[from - 1] == Place::Free {
-                    from -= 1;
-                }
-                let from = from.saturating_sub(1).max(done);
-                let mut to = i + 1;
-                while to < n && self.place[to] == Place::Free {
-                    to += 1;
-                }
-                let to = (to + 1).min(n);
-                self.solve_between(from, to)?;
-                self.contradictions(from, to, &mut next);
-                // The stretch's last variable is active and its multiplier also depends on what follows: when
-                // the next stretch starts there it must be looked at again.
-                done = if to < n { to - 1 } else { to };
-                while next.last().is_some_and(|&(last, _)| last >= done) {
-                    // Re-derived below or by the closing check.
-                    if to == n {
-                        break;
-                    }
-                    next.pop();
-                }
-                if to < n {
-                    self.contradictions(done, done + 1, &mut next);
-                }
-            }
-            next.dedup_by_key(|c| c.0);
-            std::mem::swap(&mut changed, &mut next);
-            rounds += 1;
-            if changed.is_empty() {
-                // Boundary multipliers were judged before their other side was final: one closing look at all.
-                self.contradictions(0, n, &mut changed);
-            }
-        }
-        Ok((rounds, true))
-    }
-
-    fn pin(&mut self, i: usize) {
-        match self.place[i] {
-            Place::Lower => self.x[i] = self.program.lower[i],
-            Place::Upper => self.x[i] = self.program.upper[i],
-            Place::Free => {}
-        }
-    }
-
-    /// Solve for the free variables of `from..to`, whose outer neighbours are active or absent.
-    fn solve_between(&mut self, from: usize, to: usize) -> Result<(), BoxQpError> {
-        let p = self.program;
-        let n = self.x.len();
-        let mut i = from;
-        while i < to {
-            if self.place[i] != Place::Free {
-                i += 1;
-                continue;
-            }
-            let start = i;
-            let mut rhs_carry =
-                if start > 0 { -p.off_diagonal[start - 1] * self.x[start - 1] } else { 0.0 };
-            let mut factor = 0.0;
-            while i < to && self.place[i] == Place::Free {
-                let below = if i > start { p.off_diagonal[i - 1] } else { 0.0 };
-                let pivot = p.diagonal[i] - below * factor;
-                if !(pivot > 0.0) {
-                    return Err(BoxQpError::NotPositiveDefinite { index: i, value: pivot });
-                }
-                let inverse = 1.0 / pivot;
-                let rhs = -p.linear[i] + rhs_carry;
-                self.x[i] = rhs * inverse;
-                if i + 1 < n {
-                    let o = p.off_diagonal[i];
-                    factor = o * inverse;
-                    self.work[i] = factor;
-                    rhs_carry = -o * self.x[i];
-                }
-                i += 1;
-            }
-            if i < n {
-                self.x[i - 1] -= self.work[i - 1] * self.x[i];
-            }
-            for k in (start..i - 1).rev() {
-                self.x[k] -= self.work[k] * self.x[k + 1];
-            }
-        }
-        Ok(())
-    }
-
-    /// Variables of `from..to` that contradict their place, with the place they should move to.
-    fn contradictions(&self, from: usize, to: usize, out: &mut Vec<(usize, Place)>) {
-        let p = self.program;
-        for i in from..to {
-            let (x, l, u, place) = (self.x[i], p.lower[i], p.upper[i], self.place[i]);
-            let (g, size) = gradient(p, &self.x, i);
-            // A multiplier of the wrong sign within rounding is a degenerate one, not a contradiction.
-            let tolerance = 8.0 * f64::EPSILON * size;
-            // Logic without branches: which variables are active cannot be predicted, that few contradict can.
-            let beyond = (place == Place::Free) & ((x < l) | (x > u));
-            let pulled = (place == Place::Lower) & (g < -tolerance);
-            let pushed = (place == Place::Upper) & (g > tolerance);
-            if beyond | ((pulled | pushed) & (l != u)) {
-                let to = match place {
-                    Place::Free if x < l => Place::Lower,
-                    Place::Free => Place::Upper,
-                    _ => Place::Free,
-                };
-                out.push((i, to));
-            }
-        }
-    }
-
-    /// A first guess of the active set: what a few sweeps of projected Jacobi steps leave at its bounds. Where the
-    /// diagonal dominates (a sixth is gained a sweep on splines) few variables are guessed wrong; elsewhere the guess
-    /// is as good as any.
-    fn guess(&mut self) {
-        let p = self.program;
-        let n = self.x.len();
-        if n == 0 {
-            return;
-        }
-        let clamp = |x: f64, i: usize| {
-            let x = if x < p.lower[i] { p.lower[i] } else { x };
-            if x > p.upper[i] { p.upper[i] } else { x }
-        };
-        for i in 0..n {
-            self.x[i] = clamp(-p.linear[i] / p.diagonal[i], i);
-        }
-        for _ in 0..GUESSES {
-            std::mem::swap(&mut self.x, &mut self.work);
-            let (from, to) = (&self.work[..n], &mut self.x[..n]);
-            let row = |left: f64, right: f64, i: usize| {
-                clamp(-(p.linear[i] + (left + right)) / p.diagonal[i], i)
-            };
-            if n == 1 {
-                to[0] = row(0.0, 0.0, 0);
-                continue;
-            }
-            to[0] = row(0.0, p.off_diagonal[0] * from[1], 0);
-            for i in 1..n - 1 {
-                let left = p.off_diagonal[i - 1] * from[i - 1];
-                to[i] = row(left, p.off_diagonal[i] * from[i + 1], i);
-            }
-            to[n - 1] = row(p.off_diagonal[n - 2] * from[n - 2], 0.0, n - 1);
-        }
-        for i in 0..n {
-            let (l, u) = (p.lower[i], p.upper[i]);
-            // An infinite bound is none, whatever the sweeps made of x.
-            let low = (self.x[i] <= l) & (l > f64::NEG_INFINITY);
-            let high = (self.x[i] >= u) & (u < f64::INFINITY);
-            let upper = if high { Place::Upper } else { Place::Free };
-            self.place[i] = if low | (l == u) { Place::Lower } else { upper };
-        }
-    }
-
-    /// Projected Gauss–Seidel from the clamped iterate; leaves `place` at the active set it finds.
-    fn gauss_seidel(&mut self) {
-        let p = self.program;
-        let n = self.x.len();
-        for i in 0..n {
-            self.x[i] = self.x[i].max(p.lower[i]).min(p.upper[i]);
-        }
-        for sweep in 0..SWEEPS {
-            for k in 0..n {
-                let i = if sweep % 2 == 0 { k } else { n - 1 - k };
-                let (g, _) = gradient(p, &self.x, i);
-                let x = self.x[i] - g / p.diagonal[i];
-                self.x[i] = x.max(p.lower[i]).min(p.upper[i]);
-            }
-        }
-        for i in 0..n {
-            let g = gradient(p, &self.x, i).0;
-            self.place[i] = if p.lower[i] == p.upper[i] || (self.x[i] <= p.lower[i] && g > 0.0) {
-                Place::Lower
-            } else if self.x[i] >= p.upper[i] && g < 0.0 {
-                Place::Upper
-            } else {
-                Place::Free
-            };
-        }
-    }
+/// The numbers of [`BLOCK`] rows that have neighbours on both sides.
+struct Block<'a> {
+    diagonal: &'a [f64; BLOCK],
+    linear: &'a [f64; BLOCK],
+    lower: &'a [f64; BLOCK],
+    upper: &'a [f64; BLOCK],
+    /// The off-diagonal entries and variables on the left, the variables, and those on the right.
+    off_left: &'a [f64; BLOCK],
+    off_right: &'a [f64; BLOCK],
+    x_left: &'a [f64; BLOCK],
+    x: &'a [f64; BLOCK],
+    x_right: &'a [f64; BLOCK],
 }
 
-#[cfg(test)]
-mod tests {
-    #![allow(clippy::unwrap_used)]
-    use super::*;
-
-    /// A small deterministic generator: the crate has no use for a random-number dependency.
-    struct Lcg(u64);
-    impl Lcg {
-        fn next(&mut self) -> f64 {
-            self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-            (self.0 >> 11) as f64 / (1u64 << 53) as f64
-        }
+impl<'a> Block<'a> {
+    /// None for the first rows, the last, and a rest of less than a block.
+    #[inline(always)]
+    fn of(program: &TridiagonalBoxQp<'a>, x: &'a [f64], from: usize) -> Option<Self> {
+        let before = from.checked_sub(1)?;
+        Some(Self {
+            diagonal: program.diagonal.get(from..)?.first_chunk()?,
+            linear: program.linear.get(from..)?.first_chunk()?,
+            lower: program.lower.get(from..)?.first_chunk()?,
+            upper: program.upper.get(from..)?.first_chunk()?,
+            off_left: program.off_diagonal.get(before..)?.first_chunk()?,
+            off_right: program.off_diagonal.get(from..)?.first_chunk()?,
+            x_left: x.get(before..)?.first_chunk()?,
+            x: x.get(from..)?.first_chunk()?,
+            x_right: x.get(from + 1..)?.first_chunk()?,
+        })
     }
 
-    struct Planted {
-        diagonal: Vec<f64>,
-        off: Vec<f64>,
-        linear: Vec<f64>,
-        lower: Vec<f64>,
-        upper: Vec<f64>,
-        x: Vec<f64>,
-    }
-
-    /// A program with known solution and multipliers: choose x and the multipliers, then q = λ − A x.
-    fn planted(n: usize, dominance: f64, rng: &mut Lcg) -> Planted {
-        let off: Vec<f64> =
-            (1..n).map(|_| (rng.next() - 0.5) * 10f64.powf(6.0 * rng.next() - 3.0)).collect();
-        let diagonal: Vec<f64> = (0..n)
-            .map(|i| {
-                let l = if i > 0 { off[i - 1].abs() } else { 0.0 };
-                let r = if i + 1 < n { off[i].abs() } else { 0.0 };
-                dominance * (l + r) + 1e-3
-            })
-            .collect();
-        let x: Vec<f64> =
-            (0..n).map(|_| (rng.next() - 0.5) * 10f64.powf(4.0 * rng.next())).collect();
-        let (mut lower, mut upper, mut linear) = (vec![], vec![], vec![]);
-        for i in 0..n {
-            let (l, u, lambda) = match (rng.next() * 4.0) as usize {
-                0 => (x[i], x[i] + 1.0, diagonal[i] * rng.next()),
-                1 => (x[i] - 1.0, x[i], -diagonal[i] * rng.next()),
-                2 => (x[i], x[i], diagonal[i] * (rng.next() - 0.5)),
-                _ => (x[i] - 1.0, f64::INFINITY, 0.0),
-            };
-            let mut ax = diagonal[i] * x[i];
-            if i > 0 {
-                ax += off[i - 1] * x[i - 1];
-            }
-            if i + 1 < n {
-                ax += off[i] * x[i + 1];
-            }
-            lower.push(l);
-            upper.push(u);
-            linear.push(lambda - ax);
-        }
-        Planted { diagonal, off, linear, lower, upper, x }
-    }
-
-    #[test]
-    fn planted_solutions_are_found() {
-        let mut rng = Lcg(7);
-        for case in 0..400 {
-            let n = 1 + (rng.next() * 60.0) as usize;
-            let dominance = [6.0, 2.0, 1.0][case % 3];
-            let planted = planted(n, dominance, &mut rng);
-            let program = TridiagonalBoxQp {
-                diagonal: &planted.diagonal,
-                off_diagonal: &planted.off,
-                linear: &planted.linear,
-                lower: &planted.lower,
-                upper: &planted.upper,
-            };
-            for patience in [PATIENCE, 0] {
-                let solution = solve_with_patience(&program, patience).unwrap();
-                assert!(solution.solved, "case {case}");
-                assert_eq!(solution.safeguards > 0, patience == 0, "case {case}");
-                assert!(solution.kkt_residual < 1e-12, "case {case}: {:e}", solution.kkt_residual);
-                let size = planted.x.iter().fold(1.0f64, |a, b| a.max(b.abs()));
-                for (a, b) in solution.x.iter().zip(&planted.x) {
-                    assert!((a - b).abs() <= 1e-8 * size, "case {case} n {n}: {a} {b}");
-                }
-            }
-        }
-    }
-
-    #[test]
-    fn large_programs_need_few_rounds() {
-        let mut rng = Lcg(11);
-        let planted = planted(100_000, 6.0, &mut rng);
-        let program = TridiagonalBoxQp {
-            diagonal: &planted.diagonal,
-            off_diagonal: &planted.off,
-            linear: &planted.linear,
-            lower: &planted.lower,
-            upper: &planted.upper,
-        };
-        let solution = solve(&program).unwrap();
-        assert!(solution.solved && solution.iterations <= 15, "{} rounds", solution.iterations);
-    }
-
-    #[test]
-    fn nothing_to_find_is_found() {
-        let [diagonal, off_diagonal, linear, lower, upper] = [&[]; 5];
-        let empty = TridiagonalBoxQp { diagonal, off_diagonal, linear, lower, upper };
-        let solution = solve(&empty).unwrap();
-        assert!(solution.x.is_empty() && solution.solved);
-    }
-
-    #[test]
-    fn bad_input_is_named() {
-        let mut program = TridiagonalBoxQp {
-            diagonal: &[1.0, 1.0],
-            off_diagonal: &[0.0],
-            linear: &[0.0, 0.0],
-            lower: &[0.0, 2.0],
-            upper: &[1.0, 1.0],
-        };
-        assert_eq!(solve(&program).unwrap_err().to_string(), "lower[1] = 2 is above upper[1] = 1");
-        program.lower = &[0.0, f64::NAN];
-        assert!(matches!(solve(&program), Err(BoxQpError::EmptyBox { index: 1, .. })));
-        program.lower = &[0.0];
-        assert!(matches!(solve(&program), Err(BoxQpError::Length { argument: "lower", .. })));
-        program.lower = &[0.0, 0.0];
-        program.diagonal = &[1.0, -1.0];
-        assert!(matches!(solve(&program), Err(BoxQpError::NotPositiveDefinite { index: 1, .. })));
-        program.diagonal = &[1.0, 1.0];
-        program.lower = &[f64::NEG_INFINITY; 2];
-        program.upper = &[f64::INFINITY; 2];
-        program.off_diagonal = &[2.0];
-        assert!(matches!(solve(&program), Err(BoxQpError::NotPositiveDefinite { index: 1, .. })));
-    }
-
-    /// Found by mutation: a residual is relative to the sum of the sizes of a row's terms.
-    #[test]
-    fn a_residual_by_hand() {
-        let program = TridiagonalBoxQp {
-            diagonal: &[4.0, 2.0],
-            off_diagonal: &[1.0],
-            linear: &[3.0, -1.0],
-            lower: &[f64::NEG_INFINITY; 2],
-            upper: &[f64::INFINITY; 2],
-        };
-        // Rows: 4·0.5 + 1·0.25 + 3 = 5.25 of terms 2, 0.25, 3; 0.5 + 0.5 − 1 = 0.
-        assert_eq!(kkt_residual(&program, &[0.5, 0.25]), 5.25 / 5.25);
-        // 4·(−0.5) + 0.25 + 3 = 1.25 of 5.25; −0.5 + 0.5 − 1 = −1 of 2.
-        assert_eq!(kkt_residual(&program, &[-0.5, 0.25]), 0.5);
-        // 4·(−0.5) + 1·1 + 3 = 2 of 6; −0.5 + 2 − 1 = 0.5 of 3.5.
-        assert_eq!(kkt_residual(&program, &[-0.5, 1.0]), 2.0 / 6.0);
+    /// [`gradient`] of row k of the block.
+    #[inline(always)]
+    fn gradient(&self, k: usize) -> (f64, f64) {
+        let own = self.diagonal[k] * self.x[k];
+        let left = self.off_left[k] * self.x_left[k];
+        let right = self.off_right[k] * self.x_right[k];
+        let q = self.linear[k];
+        (own + left + right + q, own.abs() + left.abs() + right.abs() + q.abs())
     }
 }

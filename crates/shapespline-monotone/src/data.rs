@@ -57,10 +57,21 @@ impl Units {
         Ok(Self { ex, ey })
     }
 
-    /// Spacing of x, scaled.
-    #[inline]
-    pub(crate) fn spacing(self, x: &[f64], i: usize) -> f64 {
-        PowerOfTwo::new(-self.ex).scale(x[i + 1] - x[i])
+    /// A spacing of x in scaled units.
+    pub(crate) fn spacing(self) -> PowerOfTwo {
+        PowerOfTwo::new(-self.ex)
+    }
+
+    /// Spacings and secants of the segments between the points given, scaled.
+    #[inline(always)]
+    pub(crate) fn differences(self, x: &[f64], y: &[f64], h: &mut [f64], delta: &mut [f64]) {
+        let (to_x, to_y) = (self.spacing(), PowerOfTwo::new(-self.ey));
+        let n = h.len();
+        let (x, y, delta) = (&x[..n + 1], &y[..n + 1], &mut delta[..n]);
+        for i in 0..n {
+            h[i] = to_x.scale(x[i + 1] - x[i]);
+            delta[i] = to_y.scale(y[i + 1] - y[i]) / h[i];
+        }
     }
 
     /// A scaled difference of y in the data's units.
@@ -68,21 +79,21 @@ impl Units {
         PowerOfTwo::new(self.ey)
     }
 
+    /// A scaled slope in the data's units.
+    pub(crate) fn slope(self) -> PowerOfTwo {
+        PowerOfTwo::new(self.ey - self.ex)
+    }
+
     /// Slopes in scaled units to those of the data.
     pub(crate) fn slopes_out(self, d: &mut [f64]) {
-        let unit = PowerOfTwo::new(self.ey - self.ex);
-        each(d, |_, d| unit.scale(d));
+        let unit = self.slope();
+        parts_mut(d, |_, d| d.iter_mut().for_each(|d| *d = unit.scale(*d)));
     }
 
     /// Second derivatives in scaled units to those of the data.
     pub(crate) fn seconds_out(self, s: &mut [f64]) {
         let (a, b) = (PowerOfTwo::new(self.ey - self.ex), PowerOfTwo::new(-self.ex));
-        each(s, |_, s| b.scale(a.scale(s)));
-    }
-
-    /// Differences of y in scaled units to those of the data.
-    pub(crate) fn values_out(self, v: &mut [f64]) {
-        each(v, |_, v| self.y().scale(v));
+        parts_mut(s, |_, s| s.iter_mut().for_each(|s| *s = b.scale(a.scale(*s))));
     }
 
     /// A scaled energy in the data's units: y²/x³ for the bending energy, y² for the parametric one.
@@ -98,20 +109,6 @@ impl Units {
         }
         y.scale(value)
     }
-}
-
-/// As many numbers, made on all threads where there are many.
-pub(crate) fn numbers(n: usize, of: impl Fn(usize) -> f64 + Sync) -> Vec<f64> {
-    if n < 2 * PART {
-        (0..n).map(of).collect()
-    } else {
-        (0..n).into_par_iter().with_min_len(PART).map(&of).collect()
-    }
-}
-
-/// A copy.
-pub(crate) fn copy(values: &[f64]) -> Vec<f64> {
-    if values.len() < 2 * PART { values.to_vec() } else { numbers(values.len(), |i| values[i]) }
 }
 
 /// The first entry with a property (of its index and value).
@@ -140,16 +137,13 @@ pub(crate) fn parts<T: Send>(n: usize, of: impl Fn(Range<usize>) -> T + Sync) ->
     }
 }
 
-/// Every number replaced (by its index and value), on all threads where there are many.
-pub(crate) fn each(values: &mut [f64], by: impl Fn(usize, f64) -> f64 + Sync) {
-    let replace = |(k, part): (usize, &mut [f64])| {
-        let start = k * PART;
-        part.iter_mut().enumerate().for_each(|(i, v)| *v = by(start + i, *v));
-    };
+/// `by` every part of the numbers (with its start), on all threads where there are many.
+pub(crate) fn parts_mut(values: &mut [f64], by: impl Fn(usize, &mut [f64]) + Sync) {
     if values.len() < 2 * PART {
-        replace((0, values));
+        by(0, values);
     } else {
-        values.par_chunks_mut(PART).enumerate().for_each(replace);
+        let parts = values.par_chunks_mut(PART).enumerate();
+        parts.for_each(|(k, part)| by(k * PART, part));
     }
 }
 
@@ -168,9 +162,18 @@ impl Data {
     /// Check the data and take their differences. O(N).
     pub(crate) fn new(x: &[f64], y: &[f64]) -> Result<Self, MonotoneError> {
         let units = Units::of(x, y)?;
-        let (to_x, to_y) = (PowerOfTwo::new(-units.ex), PowerOfTwo::new(-units.ey));
-        let h = numbers(x.len() - 1, |i| to_x.scale(x[i + 1] - x[i]));
-        let delta = numbers(h.len(), |i| to_y.scale(y[i + 1] - y[i]) / h[i]);
+        let n = x.len() - 1;
+        let (mut h, mut delta) = (vec![0.0; n], vec![0.0; n]);
+        let part = |(k, (h, delta)): (usize, (&mut [f64], &mut [f64]))| {
+            let own = k * PART..=k * PART + h.len();
+            units.differences(&x[own.clone()], &y[own], h, delta);
+        };
+        if n < 2 * PART {
+            part((0, (&mut h, &mut delta)));
+        } else {
+            let parts = h.par_chunks_mut(PART).zip(delta.par_chunks_mut(PART));
+            parts.enumerate().for_each(part);
+        }
         if let Some(i) = first(&delta, |_, d| !(d.abs() < f64::MAX)) {
             return Err(out_of_range("secant slope", "y", i, y[i]));
         }

@@ -66,28 +66,44 @@ pub(crate) fn is_flat(delta: f64) -> bool {
 
 /// The energy of nodal slopes and second derivatives, in scaled units. O(N).
 pub(crate) fn total(data: &Data, fairness: Fairness, d: &[f64], s: &[f64]) -> f64 {
+    /// Segments whose energies are worked out together.
+    const TILE: usize = 64;
     // Sums of parts of one size: the same number on any number of threads.
     let parts = parts(data.len(), |part| {
-        part.fold(0.0, |sum, i| sum + segment(fairness, data.h[i], data.delta[i], d, s, i))
+        let mut sum = 0.0;
+        for from in part.clone().step_by(TILE) {
+            let n = TILE.min(part.end - from);
+            let (h, delta) = (&data.h[from..from + n], &data.delta[from..from + n]);
+            let (d, s) = (&d[from..=from + n], &s[from..=from + n]);
+            let mut energies = [0.0; TILE];
+            for i in 0..n {
+                energies[i] = segment(fairness, h[i], delta[i], [d[i], s[i]], [d[i + 1], s[i + 1]]);
+            }
+            // In four sums, which are made side by side.
+            let mut sums = [0.0; 4];
+            for four in energies.chunks_exact(4) {
+                sums.iter_mut().zip(four).for_each(|(sum, energy)| *sum += energy);
+            }
+            sum += (sums[0] + sums[1]) + (sums[2] + sums[3]);
+        }
+        sum
     });
     parts.iter().sum::<f64>() / 35.0
 }
 
 /// A segment's share of [`total`], times 35.
-#[inline]
-fn segment(fairness: Fairness, h: f64, delta: f64, d: &[f64], s: &[f64], i: usize) -> f64 {
-    if is_flat(delta) {
-        return 0.0;
-    }
+#[inline(always)]
+fn segment(fairness: Fairness, h: f64, delta: f64, v0: [f64; 2], v1: [f64; 2]) -> f64 {
     let inverse = 1.0 / delta;
     let curvature = 0.25 * h * inverse;
     let e = local(
-        (d[i] - delta) * inverse,
-        s[i] * curvature,
-        (d[i + 1] - delta) * inverse,
-        s[i + 1] * curvature,
+        (v0[0] - delta) * inverse,
+        v0[1] * curvature,
+        (v1[0] - delta) * inverse,
+        v1[1] * curvature,
     );
-    weight(fairness, h, delta) * e
+    let energy = weight(fairness, h, delta) * e;
+    if is_flat(delta) { 0.0 } else { energy }
 }
 
 #[cfg(test)]

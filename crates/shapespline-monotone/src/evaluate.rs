@@ -1,17 +1,17 @@
 //! Values and derivatives of the interpolants, one or many: segments first, then values, on all threads.
 
 use crate::extrapolation::Extrapolation;
-use crate::locate::{Searcher, TILE};
+use crate::locate::Searcher;
 use crate::piecewise::PiecewisePolynomial;
 use crate::record::Record;
 use crate::spline::{Cached, Kind, MonotoneSpline};
-use rayon::prelude::*;
+use crate::tiles::{self, TILE};
 use std::array;
 
 /// Tiles that one thread works through at least.
 const TILES: usize = 128;
 /// Segments of a sorted tile that are gone through one after another.
-const RUNS: usize = 10;
+const RUNS: usize = 11;
 
 impl MonotoneSpline {
     pub(crate) fn searcher(&self, many: bool) -> Searcher<'_> {
@@ -42,16 +42,7 @@ impl MonotoneSpline {
     ) -> Vec<f64> {
         let mode = extrapolate.unwrap_or(self.extrapolate);
         let search = self.searcher(queries.len() > TILE);
-        // Collected, not written to what was zeroed before: clearing fresh memory is a good part of the time.
-        let tiles: Vec<[f64; TILE]> = if queries.len() <= 2 * TILE * TILES {
-            queries.chunks(TILE).map(|q| self.tile(search, q, nu, mode)).collect()
-        } else {
-            let tiles = queries.par_chunks(TILE).with_min_len(TILES);
-            tiles.map(|q| self.tile(search, q, nu, mode)).collect()
-        };
-        let mut values = tiles.into_flattened();
-        values.truncate(queries.len());
-        values
+        tiles::answers(queries, TILES, |q| self.tile(search, q, nu, mode))
     }
 
     /// [`Self::evaluate_many`] into a slice. `out` must have the queries' length; extra entries of the longer are left
@@ -64,18 +55,10 @@ impl MonotoneSpline {
         out: &mut [f64],
     ) {
         let mode = extrapolate.unwrap_or(self.extrapolate);
-        let n = queries.len().min(out.len());
-        let search = self.searcher(n > TILE);
-        let work = |(q, out): (&[f64], &mut [f64])| {
-            let values = self.tile(search, q, nu, mode);
-            out.copy_from_slice(&values[..q.len()]);
-        };
-        if n <= 2 * TILE * TILES {
-            queries[..n].chunks(TILE).zip(out[..n].chunks_mut(TILE)).for_each(work);
-        } else {
-            let tiles = queries[..n].par_chunks(TILE).zip(out[..n].par_chunks_mut(TILE));
-            tiles.with_min_len(TILES).for_each(work);
-        }
+        let search = self.searcher(queries.len().min(out.len()) > TILE);
+        tiles::fill(queries, out, TILES, |q, out| {
+            out.copy_from_slice(&self.tile(search, q, nu, mode)[..q.len()]);
+        });
     }
 
     /// The values at up to [`TILE`] queries.
@@ -94,19 +77,12 @@ impl MonotoneSpline {
         let inside = queries.iter().fold(true, |all, &x| all & (x >= first) & (x <= last));
         let sorted = queries.windows(2).fold(true, |all, w| all & (w[0] <= w[1]));
         if sorted && inside && nu == 0 {
-            let n = queries.len();
-            let (i, j) = (search.find(queries[0]), queries[n - 1]);
-            let j = search.near(i, j);
-            if j - i <= RUNS {
-                // On few segments, as fine samples are: what depends on a segment alone is loaded once.
-                let mut out = [0.0; TILE];
-                let mut from = 0;
-                for k in i..=j {
-                    let run = queries[from..].iter().take_while(|v| k == j || **v < self.x[k + 1]);
-                    let to = from + run.count();
-                    self.records[k].values(&queries[from..to], &mut out[from..to]);
-                    from = to;
-                }
+            // On few segments, as fine samples are: what depends on a segment alone is loaded once.
+            let mut out = [0.0; TILE];
+            let done = search.runs(queries, RUNS, |i, run| {
+                self.records[i].values(&queries[run.clone()], &mut out[run]);
+            });
+            if done {
                 return out;
             }
         }

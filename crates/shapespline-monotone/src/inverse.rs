@@ -2,19 +2,25 @@
 
 use crate::MonotoneError;
 use crate::extrapolation::Extrapolation;
-use crate::locate::{Locator, Searcher, TILE};
+use crate::locate::{Locator, Searcher};
 use crate::record::Record;
 use crate::spline::MonotoneSpline;
-use rayon::prelude::*;
+use crate::tiles::{self, TILE};
+
+mod lanes;
+mod run;
+
+use lanes::Lanes;
+use run::Room;
 
 /// Tiles that one thread works through at least.
 const TILES: usize = 64;
-/// Steps that all queries of a tile take together at most; what has not converged by then goes on alone.
+/// Segments of a sorted tile that are gone through one after another.
+const RUNS: usize = 12;
+/// Steps that queries take together at most; what has not converged by then goes on alone.
 const STEPS: usize = 5;
-/// Adding it rounds to integers.
-const MAGIC: f64 = 4_503_599_627_370_496.0;
-/// Queries of a tile that may go on alone.
-const FEW: usize = 12;
+/// The share of queries that may go on alone: one in so many.
+const FEW: usize = 5;
 
 /// What inverting needs, made once.
 #[derive(Debug)]
@@ -71,15 +77,7 @@ impl MonotoneSpline {
     pub fn inverse_many(&self, queries: &[f64]) -> Result<Vec<f64>, MonotoneError> {
         let inverse = self.inverted()?;
         let search = self.inverse_searcher(inverse, queries.len() > TILE);
-        let tile = |q: &[f64]| self.inverse_tile(search, inverse.falling, q);
-        let tiles: Vec<[f64; TILE]> = if queries.len() <= 2 * TILE * TILES {
-            queries.chunks(TILE).map(tile).collect()
-        } else {
-            queries.par_chunks(TILE).with_min_len(TILES).map(tile).collect()
-        };
-        let mut places = tiles.into_flattened();
-        places.truncate(queries.len());
-        Ok(places)
+        Ok(tiles::answers(queries, TILES, |q| self.inverse_tile(search, inverse.falling, q)))
     }
 
     /// [`Self::inverse_many`] into a slice. `out` must have the queries' length; extra entries of the longer are left
@@ -111,7 +109,22 @@ impl MonotoneSpline {
         if falling {
             keys = keys.map(|v| -v);
         }
-        let sorted = keys.windows(2).fold(true, |all, w| all & (w[0] <= w[1]));
+        let sorted = keys[..queries.len()].windows(2).fold(true, |all, w| all & (w[0] <= w[1]));
+        if sorted {
+            let (mut out, mut room) = ([0.0; TILE], Room::default());
+            let done = search.runs(&keys[..queries.len()], RUNS, |i, run| {
+                run::invert(
+                    self.record(i),
+                    self.x()[i + 1],
+                    &y[run.clone()],
+                    &mut out[run],
+                    &mut room,
+                );
+            });
+            if done {
+                return out;
+            }
+        }
         let mut segments = [0; TILE];
         search.tile(&keys[..queries.len()], sorted, &mut segments);
         let mut lanes = Lanes::new(|j| self.record(segments[j]), &y);
@@ -204,93 +217,4 @@ fn local(record: &Record, y: f64, start: f64) -> f64 {
         }
     }
     t
-}
-
-/// A tile of queries in their segments, in units of Δy, number by number: the compiler takes several queries at once.
-struct Lanes {
-    q: [[f64; TILE]; 4],
-    /// `(y − y₀)/Δy` and `(y − y₁)/Δy`.
-    from: [[f64; TILE]; 2],
-    t: [f64; TILE],
-    /// Positive (or NaN) where t is not known to be exact up to rounding.
-    doubt: [f64; TILE],
-}
-
-impl Lanes {
-    #[inline(always)]
-    fn new<'a>(record: impl Fn(usize) -> &'a Record, y: &[f64; TILE]) -> Self {
-        let mut l = Self {
-            q: [[0.0; TILE]; 4],
-            from: [[0.0; TILE]; 2],
-            t: [0.0; TILE],
-            doubt: [1.0; TILE],
-        };
-        let mut inverse = [0.0; TILE];
-        for j in 0..TILE {
-            let r = record(j);
-            inverse[j] = r.y[1] - r.y[0];
-            (l.q[0][j], l.q[1][j], l.q[2][j], l.q[3][j]) = (r.q[0], r.q[1], r.q[2], r.q[3]);
-            (l.from[0][j], l.from[1][j]) = (y[j] - r.y[0], y[j] - r.y[1]);
-        }
-        // The start: the inverse of the rational function (t² + m₀t(1−t))/(1 + (m₀+m₁−2)t(1−t)) through both ends with
-        // their slopes (Gregory and Delbourgo's monotone one), a quadratic equation.
-        for j in 0..TILE {
-            let unit = 1.0 / inverse[j];
-            let q = [l.q[0][j] * unit, l.q[1][j] * unit, l.q[2][j] * unit, l.q[3][j] * unit];
-            let (even, odd) = (q[0] + q[2], q[1] + q[3]);
-            let (m0, m1) = (1.0 - (even - odd), 1.0 + (even + odd));
-            let r = l.from[0][j] * unit;
-            let b = m0 - r * (m0 + m1 - 2.0);
-            l.t[j] = 2.0 * r / (b + (b * b + 4.0 * r * (1.0 - b)).sqrt());
-            (l.q[0][j], l.q[1][j], l.q[2][j], l.q[3][j]) = (q[0], q[1], q[2], q[3]);
-            (l.from[0][j], l.from[1][j]) = (r, l.from[1][j] * unit);
-        }
-        l
-    }
-
-    /// Householder's steps of fourth order until nearly all are done.
-    #[inline(always)]
-    fn solve(&mut self) {
-        self.step();
-        for _ in 1..STEPS {
-            self.step();
-            let doubtful: usize = self.doubt.iter().map(|d| usize::from(!(*d <= 0.0))).sum();
-            if doubtful <= FEW {
-                break;
-            }
-        }
-    }
-
-    #[inline(always)]
-    fn step(&mut self) {
-        for j in 0..TILE {
-            let t = self.t[j];
-            let [q0, q1, q2, q3] = [self.q[0][j], self.q[1][j], self.q[2][j], self.q[3][j]];
-            let (z, bubble) = (2.0 * t - 1.0, t * (t - 1.0));
-            let q = ((q3 * z + q2) * z + q1) * z + q0;
-            let dq = (3.0 * q3 * z + 2.0 * q2) * z + q1;
-            let ddq = 6.0 * q3 * z + 2.0 * q2;
-            // From the nearer end, 0 or 1, by arithmetic alone: a choice of what to load keeps the compiler from taking
-            // several queries at once.
-            let end = (t + MAGIC) - MAGIC;
-            let goal = (1.0 - end) * self.from[0][j] + end * self.from[1][j];
-            // f and its first three derivatives.
-            let f = ((t - end) + bubble * q) - goal;
-            let d1 = 1.0 + z * q + 2.0 * bubble * dq;
-            let d2 = 2.0 * q + 4.0 * (z * dq + bubble * ddq);
-            let d3 = 12.0 * (dq + z * ddq) + 48.0 * bubble * q3;
-            let square = d1 * d1;
-            let bend = f * d2;
-            let step =
-                f * (square - 0.5 * bend) / (d1 * (square - bend) + f * f * d3 * (1.0 / 6.0));
-            let next = t - step;
-            // What is left is of fourth order: below rounding once the step is below 1e-4 of the way to the nearer
-            // end, and what it corrects of Newton's step below 1e-4.
-            let room = if next < 0.5 { next } else { 1.0 - next };
-            let size = step.abs() - 1e-4 * room;
-            let bent = bend.abs() - 2e-4 * square;
-            self.t[j] = next;
-            self.doubt[j] = if size > bent { size } else { bent };
-        }
-    }
 }

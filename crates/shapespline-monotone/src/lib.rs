@@ -58,6 +58,7 @@ pub mod second_opinion;
 mod slopes;
 mod spline;
 mod stretches;
+mod tiles;
 mod windows;
 
 #[cfg(doctest)]

@@ -1,10 +1,9 @@
 //! Finding the segments of queries: a table of equal buckets over the knots, built at the first large request.
 
+use crate::tiles::TILE;
+use std::ops::Range;
 use std::sync::OnceLock;
 
-/// Queries whose segments are found before any of them is evaluated: what the loops load depends on no branch of the
-/// iteration before, so that cache misses overlap.
-pub(crate) const TILE: usize = 64;
 /// Knots from which a table pays; below it a binary search stays in the first cache lines.
 const SMALL: usize = 8;
 /// Knots compared without a branch after the one that the table names: nearly always enough on knots that are not too
@@ -149,6 +148,36 @@ impl Searcher<'_> {
             }
             hint = *i;
         }
+    }
+
+    /// Calls `work` with every segment that has some of the sorted queries, and which; false, and nothing called, if
+    /// some are outside the knots or they reach over more than `most` segments.
+    #[inline(always)]
+    pub(crate) fn runs(
+        &self,
+        queries: &[f64],
+        most: usize,
+        mut work: impl FnMut(usize, Range<usize>),
+    ) -> bool {
+        let (x, n) = (self.x, queries.len());
+        if n == 0 || !(queries[0] >= x[0] && queries[n - 1] <= x[x.len() - 1]) {
+            return false;
+        }
+        let first = self.find(queries[0]);
+        let last = self.near(first, queries[n - 1]);
+        if last - first >= most {
+            return false;
+        }
+        let mut from = 0;
+        for i in first..=last {
+            let run = queries[from..].iter().take_while(|v| i == last || **v < x[i + 1]);
+            let to = from + run.count();
+            if from < to {
+                work(i, from..to);
+            }
+            from = to;
+        }
+        true
     }
 
     /// The segment of v, looked for from `hint` on in steps that double, as sorted queries have it; by search where

@@ -30,7 +30,7 @@
 
 mod cone;
 mod matrices;
-#[cfg(test)]
+#[cfg(any(test, feature = "nlopt"))]
 pub(crate) mod parts;
 mod step;
 

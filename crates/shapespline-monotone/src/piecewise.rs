@@ -3,11 +3,11 @@
 use crate::bernstein;
 use crate::extrapolation::Extrapolation;
 use crate::integrals::{Lazy, Pieces, whole};
-use crate::locate::{Locator, TILE};
-use rayon::prelude::*;
+use crate::locate::Locator;
+use crate::tiles::{self, TILE};
 
-/// Queries that one thread works through at least.
-const PARALLEL: usize = 1 << 14;
+/// Tiles that one thread works through at least.
+const TILES: usize = 128;
 
 /// A piecewise polynomial `Σₖ cₖ Bₖⁿ((x − xᵢ)/hᵢ)` on increasing knots.
 ///
@@ -112,21 +112,14 @@ impl PiecewisePolynomial {
         out: &mut [f64],
     ) {
         let mode = extrapolate.unwrap_or(self.extrapolate);
-        let n = queries.len().min(out.len());
-        let search = self.locator.searcher(&self.x, n > TILE);
-        let work = |(q, out): (&[f64], &mut [f64])| {
+        let search = self.locator.searcher(&self.x, queries.len().min(out.len()) > TILE);
+        tiles::fill(queries, out, TILES, |q, out| {
             let mut segments = [0; TILE];
             search.tile(q, q.is_sorted(), &mut segments);
             for ((value, &x), &i) in out.iter_mut().zip(q).zip(&segments) {
                 *value = self.at(i, x, nu, mode);
             }
-        };
-        if n > PARALLEL {
-            let tiles = queries[..n].par_chunks(TILE).zip(out[..n].par_chunks_mut(TILE));
-            tiles.with_min_len(PARALLEL / TILE).for_each(work);
-        } else {
-            queries[..n].chunks(TILE).zip(out[..n].chunks_mut(TILE)).for_each(work);
-        }
+        });
     }
 
     fn at(&self, i: usize, x: f64, nu: usize, mode: Extrapolation) -> f64 {

@@ -6,7 +6,7 @@
 //! the reflection. At a turn of the data dᵢ = 0 and sᵢ has the turn's sign; at a flat segment dᵢ = sᵢ = 0.
 
 use crate::MonotoneError;
-use crate::data::{Data, each, out_of_range};
+use crate::data::{Data, out_of_range, parts_mut};
 use crate::energy::{Fairness, is_flat};
 use shapespline_banded::box_qp::{BoxQpSolution, TridiagonalBoxQp, solve};
 use std::ops::Range;
@@ -36,31 +36,73 @@ fn smaller(a: f64, b: f64) -> f64 {
     if a < b { a } else { b }
 }
 
-/// The interval one segment leaves to the second derivative at one of its ends, for an increasing segment seen
-/// from its left end: `[−4d/h, 6(Δ−d)/h]`. `d`, `delta` ≥ 0.
-#[inline]
-fn interval(h: f64, delta: f64, d: f64) -> (f64, f64) {
+/// The intervals that a segment leaves to the second derivatives at its ends: of an increasing one seen from its left
+/// end `[−4d/h, 6(Δ−d)/h]`. The right end is the left end of the segment traversed backwards with y reflected as well,
+/// a decreasing segment the reflection. As (low, high) of the left end, then of the right.
+#[inline(always)]
+fn intervals(h: f64, delta: f64, d0: f64, d1: f64) -> [f64; 4] {
     let inverse = 1.0 / h;
-    (-4.0 * (d * inverse) * INSIDE, 6.0 * ((delta - d) * inverse))
+    let size = delta.abs();
+    let interval = |d: f64| {
+        let d = d.abs();
+        (-4.0 * (d * inverse) * INSIDE, 6.0 * ((size - d) * inverse))
+    };
+    let (left, right) = (interval(d0), interval(d1));
+    let falls = delta < 0.0;
+    let flat = is_flat(delta);
+    let pick = |rising: f64, falling: f64| {
+        let value = if falls { falling } else { rising };
+        if flat { 0.0 } else { value }
+    };
+    [pick(left.0, -left.1), pick(left.1, -left.0), pick(-right.1, right.0), pick(-right.0, right.1)]
 }
 
 /// Case 2 of the paper: a slope for which (17) has no non-negative solution is lowered to
 /// `(Δᵢ₋₁hᵢ + Δᵢhᵢ₋₁)/(hᵢ₋₁ + hᵢ)` (equation (19)). Also clears slopes at flats. In place, O(N).
 pub(crate) fn admissible_slopes(data: &Data, d: &mut [f64]) {
-    let (h, delta) = (&data.h, &data.delta);
     let n = data.len();
-    each(d, |i, d| {
-        let (l, r) = (i.max(1) - 1, i.min(n - 1));
-        if is_flat(delta[l]) || is_flat(delta[r]) {
-            return 0.0;
+    parts_mut(d, |start, d| {
+        // The segments on the left and on the right of every node; at the ends the same.
+        let inner = start.max(1)..(start + d.len()).min(n);
+        for node in [start, start + d.len() - 1] {
+            if !inner.contains(&node) {
+                let only = if node == 0 { 0 } else { n - 1 };
+                let flat = is_flat(data.delta[only]);
+                d[node - start] = if flat { 0.0 } else { d[node - start] };
+            }
         }
-        if l == r || d == 0.0 {
-            return d;
+        if inner.is_empty() {
+            return;
         }
-        let sum = h[l] + h[r];
-        let cap = delta[l] * (h[r] / sum) + delta[r] * (h[l] / sum);
-        if d.abs() > cap.abs() { cap } else { d }
+        let d = &mut d[inner.start - start..inner.end - start];
+        let left = inner.start - 1..inner.end - 1;
+        let (h, delta) = (&data.h[left.clone()], &data.delta[left]);
+        let (h1, delta1) = (&data.h[inner.clone()], &data.delta[inner]);
+        let left = h.iter().zip(delta);
+        for (d, ((h0, a), (h1, b))) in d.iter_mut().zip(left.zip(h1.iter().zip(delta1))) {
+            let sum = h0 + h1;
+            let cap = a * (h1 / sum) + b * (h0 / sum);
+            let slope = if d.abs() > cap.abs() { cap } else { *d };
+            // A slope of zero stays: at a turn the cap may have either sign.
+            let slope = if *d == 0.0 { *d } else { slope };
+            *d = if is_flat(*a) | is_flat(*b) { 0.0 } else { slope };
+        }
     });
+}
+
+/// A node's bounds (zeros without a sign). Case 2 and the turns make the two meet exactly, and a flat beside fixes both at
+/// zero; rounding must not make the box empty.
+#[inline(always)]
+fn bounds(low: f64, high: f64) -> (f64, f64) {
+    let met = if low.abs() < high.abs() { low } else { high };
+    let empty = low > high;
+    (if empty { met } else { low } + 0.0, if empty { met } else { high } + 0.0)
+}
+
+/// Whether an entry of the matrix leaves room for its products.
+#[inline(always)]
+fn in_range(entry: f64) -> bool {
+    (entry > 1e-300) & (entry < 1e300)
 }
 
 impl Program {
@@ -82,59 +124,81 @@ impl Program {
         let (h, delta) = (&data.h[segments.clone()], &data.delta[segments.clone()]);
         let d = &d[segments.start..=segments.end];
         let n = h.len();
-        for (array, room) in [
+        for (array, size) in [
             (&mut self.diagonal, n + 1),
             (&mut self.off_diagonal, n),
             (&mut self.linear, n + 1),
             (&mut self.lower, n + 1),
             (&mut self.upper, n + 1),
         ] {
-            array.clear();
-            array.reserve_exact(room);
+            array.resize(size, 0.0);
         }
-        // A node gets its entries from the segments on both sides: what the one on the left leaves is carried along.
-        let mut carry = (0.0, 0.0, f64::NEG_INFINITY, f64::INFINITY);
-        for i in 0..n {
-            let (h, delta, d0, d1) = (h[i], delta[i], d[i], d[i + 1]);
-            // Energy (20) in s, times 35 and the fairness weight: h³ between the two energies.
-            let weight = match fairness {
-                Fairness::Bending => 1.0,
-                Fairness::Parametric => h * h * h,
-            };
-            if !(weight * h > 1e-300 && weight * h < 1e300) {
-                return Err(out_of_range("parametric energy", "x", segments.start + i, h));
-            }
-            let (left, right) = if is_flat(delta) {
-                ((0.0, 0.0), (0.0, 0.0))
-            } else {
-                let (slope0, slope1, size) = (d0.abs(), d1.abs(), delta.abs());
-                let (left, right) = (interval(h, size, slope0), interval(h, size, slope1));
-                // The right end is the left end of the segment traversed backwards with y reflected as well.
-                let turned = |(low, high): (f64, f64)| (-high, -low);
-                if delta < 0.0 { (turned(left), right) } else { (left, turned(right)) }
-            };
-            let meets = (larger(carry.2, left.0), smaller(carry.3, left.1));
-            let (e0, e1) = (d0 - delta, d1 - delta);
-            self.off_diagonal.push(weight * h);
-            self.diagonal.push(carry.0 + 6.0 * weight * h);
-            self.linear.push(carry.1 + weight * (22.0 * e0 + 8.0 * e1));
-            self.bound(meets);
-            carry = (6.0 * weight * h, -(weight * (8.0 * e0 + 22.0 * e1)), right.0, right.1);
+        // Energy (20) in s, times 35 and the fairness weight: h³ between the two energies.
+        let sound = match fairness {
+            Fairness::Bending => self.fill_with(h, delta, d, |_| 1.0),
+            Fairness::Parametric => self.fill_with(h, delta, d, |h| h * h * h),
+        };
+        if sound {
+            return Ok(());
         }
-        self.diagonal.push(carry.0);
-        self.linear.push(carry.1);
-        self.bound((carry.2, carry.3));
-        Ok(())
+        let i = h.iter().position(|h| !in_range(h * h * h * h)).unwrap_or(0);
+        Err(out_of_range("parametric energy", "x", segments.start + i, h[i]))
     }
 
-    /// Append a node's bounds (zeros without a sign). Case 2 and the turns make the two meet exactly, and a flat beside fixes both at zero;
-    /// rounding must not make the box empty.
-    #[inline]
-    fn bound(&mut self, (low, high): (f64, f64)) {
-        let met = if low.abs() < high.abs() { low } else { high };
-        let empty = low > high;
-        self.lower.push(if empty { met } else { low } + 0.0);
-        self.upper.push(if empty { met } else { high } + 0.0);
+    /// A node gets its entries from the segments on both sides: what those before leave is carried from tile to tile.
+    /// Whether all energies are in range.
+    #[inline(always)]
+    fn fill_with(
+        &mut self,
+        h: &[f64],
+        delta: &[f64],
+        d: &[f64],
+        weight: impl Fn(f64) -> f64,
+    ) -> bool {
+        /// Segments done together: nothing but arithmetic and selections, from one small array to another.
+        const TILE: usize = 64;
+        let n = h.len();
+        let mut sound = true;
+        // Diagonal, linear term and bounds that the segment before node k of the tile leaves to it.
+        let mut before = [[0.0; TILE + 1]; 4];
+        (before[2][0], before[3][0]) = (f64::NEG_INFINITY, f64::INFINITY);
+        for from in (0..n).step_by(TILE) {
+            let m = TILE.min(n - from);
+            let (h, delta, d) = (&h[from..from + m], &delta[from..from + m], &d[from..=from + m]);
+            let off_diagonal = &mut self.off_diagonal[from..from + m];
+            let (diagonal, linear) =
+                (&mut self.diagonal[from..from + m], &mut self.linear[from..from + m]);
+            let (lower, upper) = (&mut self.lower[from..from + m], &mut self.upper[from..from + m]);
+            for k in 0..m {
+                let (h, delta, d0, d1) = (h[k], delta[k], d[k], d[k + 1]);
+                let weight = weight(h);
+                let own = 6.0 * weight * h;
+                let (e0, e1) = (d0 - delta, d1 - delta);
+                sound &= in_range(weight * h);
+                off_diagonal[k] = weight * h;
+                // Of the segment alone; what the one before leaves is added below.
+                diagonal[k] = own;
+                linear[k] = weight * (22.0 * e0 + 8.0 * e1);
+                let [low0, high0, low1, high1] = intervals(h, delta, d0, d1);
+                (lower[k], upper[k]) = (low0, high0);
+                before[0][k + 1] = own;
+                before[1][k + 1] = -(weight * (8.0 * e0 + 22.0 * e1));
+                (before[2][k + 1], before[3][k + 1]) = (low1, high1);
+            }
+            for k in 0..m {
+                diagonal[k] += before[0][k];
+                linear[k] += before[1][k];
+                (lower[k], upper[k]) =
+                    bounds(larger(before[2][k], lower[k]), smaller(before[3][k], upper[k]));
+            }
+            for array in &mut before {
+                array[0] = array[m];
+            }
+        }
+        let [own, slope, low, high] = before.map(|array| array[0]);
+        (self.diagonal[n], self.linear[n]) = (own, slope);
+        (self.lower[n], self.upper[n]) = bounds(low, high);
+        sound
     }
 
     pub(crate) fn view(&self) -> TridiagonalBoxQp<'_> {

@@ -2,18 +2,15 @@
 
 use crate::MonotoneError;
 use crate::Slopes;
-use crate::data::{Data, PART, check_finite, copy, first};
+use crate::data::{Data, Units, check_finite, first};
 use crate::extrapolation::Extrapolation;
-use crate::slopes;
-use crate::spline::{Kind, MonotoneSpline};
-use rayon::prelude::*;
+use crate::spline::{Cached, Kind, MonotoneSpline};
 use std::ops::Deref;
 
-/// Segments whose λ are computed together.
-const LANES: usize = 32;
-/// λ is lowered by this much below the largest admissible one, so that the derivative stays strictly non-negative
-/// after rounding.
-const INSIDE: f64 = 1.0 - 1e-12;
+mod pass;
+mod scale;
+
+use pass::{Made, Pass};
 
 /// Starting values of the shape parameters, non-negative.
 #[derive(Debug, Clone, PartialEq)]
@@ -89,14 +86,14 @@ impl MonotoneQuartic {
     /// [`MonotoneError`] naming argument, index and value: fewer than two points, lengths that differ, NaN or
     /// infinity, x not increasing, spreads or secants that overflow, a negative shape parameter.
     pub fn new(x: &[f64], y: &[f64], options: &QuarticOptions) -> Result<Self, MonotoneError> {
-        let data = Data::new(x, y)?;
-        let n = data.len();
-        let d = match &options.slopes {
-            Slopes::FritschButland => slopes::fritsch_butland(&data),
+        let units = Units::of(x, y)?;
+        let n = x.len() - 1;
+        let given = match &options.slopes {
+            Slopes::FritschButland => None,
             Slopes::Given(given) => {
                 check_length("slopes", given, n + 1)?;
                 check_finite("slopes", given)?;
-                slopes::limited(&data, given)
+                Some(&given[..])
             }
             Slopes::Optimal => {
                 return Err(MonotoneError::UnknownOption {
@@ -115,28 +112,24 @@ impl MonotoneQuartic {
                 }
             }
         }
-        let (mut scale, mut e) = (vec![0.0; n], vec![0.0; n]);
-        let part = |(k, (scale, e)): (usize, (&mut [f64], &mut [f64]))| {
-            let start = k * PART;
-            match &options.shape {
-                Shape::Uniform(a) => segments(&data, &d, start, |_| (*a, *a), scale, e),
-                Shape::Segments { .. } => {
-                    segments(&data, &d, start, |i| options.shape.at(i), scale, e);
-                }
+        let Made { d, e, scale, records, sound } =
+            Pass { x, y, units, given, shape: &options.shape }.make();
+        if !sound {
+            // A spacing or a secant out of range, or a slope in the data's units: what and where.
+            Data::new(x, y)?;
+            if let Some(i) = first(&d, |_, d| !d.is_finite()) {
+                return Err(crate::data::out_of_range("secant slope", "y", i, y[i]));
             }
+        }
+        let spline = MonotoneSpline {
+            x: x.to_vec(),
+            y: y.to_vec(),
+            d,
+            kind: Kind::Quartic { e },
+            records,
+            extrapolate: options.extrapolate,
+            cached: Cached::default(),
         };
-        if n < 2 * PART {
-            part((0, (&mut scale, &mut e)));
-        } else {
-            let parts = scale.par_chunks_mut(PART).zip(e.par_chunks_mut(PART));
-            parts.enumerate().for_each(part);
-        }
-        let units = data.units();
-        drop(data);
-        let spline = MonotoneSpline::quartic(units, copy(x), copy(y), d, e, options.extrapolate);
-        if let Some(i) = first(&spline.d, |_, d| !d.is_finite()) {
-            return Err(crate::data::out_of_range("secant slope", "y", i, y[i]));
-        }
         Ok(Self { spline, shape: options.shape.clone(), scale })
     }
 
@@ -210,133 +203,5 @@ fn check_shape(argument: &'static str, values: &[f64]) -> Result<(), MonotoneErr
     match values.iter().position(|v| !(0.0..=LARGEST_SHAPE).contains(v)) {
         Some(index) => Err(MonotoneError::Shape { argument, index, value: values[index] }),
         None => Ok(()),
-    }
-}
-
-/// λ and e (scaled) of the segments from `start` on.
-#[inline(always)]
-fn segments(
-    data: &Data,
-    d: &[f64],
-    start: usize,
-    shape: impl Fn(usize) -> (f64, f64),
-    scale: &mut [f64],
-    e: &mut [f64],
-) {
-    let n = scale.len().min(e.len());
-    let (h, delta) = (&data.h[start..start + n], &data.delta[start..start + n]);
-    let (left, right) = (&d[start..start + n], &d[start + 1..=start + n]);
-    // Nothing but arithmetic and selections, from one small array to another: done for several segments at once.
-    for from in (0..n).step_by(LANES) {
-        let lanes = LANES.min(n - from);
-        let (mut m0, mut m1, mut full) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
-        for j in 0..lanes {
-            let secant = delta[from + j];
-            let (alpha, beta) = shape(start + from + j);
-            // In units of the secant everything is of order one.
-            let secant = if secant == 0.0 { 1.0 } else { secant };
-            (m0[j], m1[j]) = (left[from + j] / secant, right[from + j] / secant);
-            full[j] = 2.0 / 3.0 * (alpha * m0[j] - beta * m1[j]);
-        }
-        // Those whose conditions (12), (13) fail, listed without a branch: which they are cannot be predicted.
-        let (mut failing, mut count) = ([0; LANES], 0);
-        for j in 0..lanes {
-            failing[count] = j;
-            count += usize::from(!keeps(m0[j], m1[j], full[j]));
-        }
-        let mut lambda = [1.0; LANES];
-        for &j in &failing[..count] {
-            lambda[j] = largest_scale(m0[j], m1[j], full[j]);
-        }
-        // Flat segments have slopes and e of zero, and a λ of one, as they are.
-        for j in 0..lanes {
-            scale[from + j] = lambda[j];
-            e[from + j] = lambda[j] * full[j] * (delta[from + j] * h[from + j]);
-        }
-    }
-}
-
-/// Conditions (12), (13): whether the full e leaves both inner coefficients of the derivative non-negative. Both
-/// cannot fail: their sum is 4 − a − d ≥ 0.
-#[inline(always)]
-fn keeps(a: f64, d: f64, full: f64) -> bool {
-    (2.0 - a + full >= 0.0) & (2.0 - d - full >= 0.0)
-}
-
-/// The largest λ ∈ [0, 1] for which the derivative (4) with `e = λ full` is non-negative on [0, 1]; `a`, `d` are
-/// the end slopes over the secant, in [0, 2].
-///
-/// The admissible e form an interval around 0 (non-negativity is an intersection of half-planes), so the boundary in
-/// one direction is a single point: there the derivative has a double root at some σ = t/(1−t), and with the
-/// coefficients a, 3B, 3C, d in powers of s it is `d(s − σ)²(s + a/(dσ²))`. Hence `3C = a/σ² − 2dσ`, and B + C =
-/// 4 − a − d = K leaves `dσ⁴ − 2dσ³ − 3Kσ² − 2aσ + a = 0`. Its signs + − − − + allow two positive roots, and at 1 it is
-/// negative: one root below 1 (where the other coefficient fails, by symmetry the same case) and one above, which is
-/// wanted. There the quartic rises and is convex, so that Newton's iteration finds it and no other. Φ of theorem 1 is
-/// the discriminant of the same cubic, with roots that mean nothing besides.
-#[inline(always)]
-fn largest_scale(a: f64, d: f64, full: f64) -> f64 {
-    let kept = keeps(a, d, full);
-    // By symmetry (t ↔ 1 − t) let it be C that fails, at e > 0.
-    let turn = 2.0 - a + full < 0.0;
-    let (near, far) = (if turn { d } else { a }, if turn { a } else { d });
-    let full = if turn { -full } else { full };
-    let room = 2.0 - far;
-    let k = 4.0 - a - d;
-    let k = if k > 0.0 { 3.0 * k } else { 0.0 };
-    let (a, d) = (near, far);
-    // σ(σ − 2) = (3K + 2a/σ − a/σ²)/d ≤ (3K + a)/d, for the root is at least 2; and once more with the bound inserted:
-    // now within 0.5 %, whatever a and d, and three of Newton's steps make that less than rounding.
-    let inverse = 1.0 / d;
-    let bound = 1.0 / (1.0 + (1.0 + (k + a) * inverse).sqrt());
-    let mut sigma = 1.0 + (1.0 + (k + a * bound * (2.0 - bound)) * inverse).sqrt();
-    for _ in 0..3 {
-        let value = ((d * sigma - 2.0 * d) * sigma - k) * (sigma * sigma) - a * (2.0 * sigma - 1.0);
-        let slope = ((4.0 * d * sigma - 6.0 * d) * sigma - 2.0 * k) * sigma - 2.0 * a;
-        sigma -= value / slope;
-    }
-    let least = room + (2.0 * d * sigma - a / (sigma * sigma)) / 3.0;
-    // Case 3 (D = 0): C ≥ 0 itself is necessary. So it is for a D that is nothing beside the other numbers.
-    let least = if d < 1e-300 { room } else { least };
-    let lambda = least * INSIDE / full;
-    let lambda = if lambda < 1.0 { lambda } else { 1.0 };
-    if kept { 1.0 } else { lambda }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::quartic_form::least;
-
-    /// The derivative (4) elevated to a quartic, so that the exact minimum of quartics can judge it.
-    fn elevated(a: f64, d: f64, e: f64) -> [f64; 5] {
-        let (b, c) = (2.0 - a + e, 2.0 - d - e);
-        [a, (a + 3.0 * b) / 4.0, (b + c) / 2.0, (3.0 * c + d) / 4.0, d]
-    }
-
-    #[test]
-    fn lambda_is_admissible_and_the_largest() {
-        let grid = [0.0, 1e-9, 1e-3, 0.1, 0.5, 0.9, 1.0, 1.3, 1.7, 1.999, 2.0];
-        let mut scaled = 0;
-        for a in grid {
-            for d in grid {
-                for alpha in [0.0, 0.5, 1.0, 3.0, 8.0, 20.0, 1e3] {
-                    for beta in [0.0, 0.5, 1.0, 3.0, 8.0, 20.0, 1e3] {
-                        let full = 2.0 / 3.0 * (alpha * a - beta * d);
-                        let lambda = largest_scale(a, d, full);
-                        assert!((0.0..=1.0).contains(&lambda));
-                        let size = 1.0 + (lambda * full).abs();
-                        let here = least(&elevated(a, d, lambda * full));
-                        assert!(here >= -1e-13 * size, "{a} {d} {alpha} {beta}: {here:e}");
-                        if lambda < 1.0 {
-                            scaled += 1;
-                            let beyond = (lambda * (1.0 + 1e-5)).min(1.0) * full;
-                            let there = least(&elevated(a, d, beyond));
-                            assert!(there < 0.0, "{a} {d} {alpha} {beta} λ {lambda}: {there:e}");
-                        }
-                    }
-                }
-            }
-        }
-        assert!(scaled > 1000);
     }
 }

@@ -1,7 +1,7 @@
 //! The C² monotone quintic: the paper's program, and the fairest over slopes as well.
 
 use crate::MonotoneError;
-use crate::data::{Data, check_finite, copy, first, parts};
+use crate::data::{Data, check_finite, first, parts};
 use crate::energy::{self, Fairness, is_flat};
 use crate::extrapolation::Extrapolation;
 use crate::optimal::coefficients;
@@ -151,7 +151,8 @@ impl MonotoneQuintic {
         };
         diagnostics.certified = certified(&data, &d, &s);
         drop(data);
-        let spline = MonotoneSpline::quintic(units, copy(x), copy(y), d, s, options.extrapolate);
+        let spline =
+            MonotoneSpline::quintic(units, x.to_vec(), y.to_vec(), d, s, options.extrapolate);
         // A second derivative beyond double precision: refuse rather than hand out infinities.
         if let Kind::Quintic { s } = &spline.kind {
             let overflow = |_, v: f64| !v.is_finite();
@@ -264,11 +265,28 @@ fn fairest(
 /// Whether every segment's derivative is non-negative in its direction, by its Bernstein coefficients; a rounding
 /// error of the coefficients themselves (they are sums of numbers of the size of the secant) is allowed for.
 fn certified(data: &Data, d: &[f64], s: &[f64]) -> bool {
-    let all = parts(data.len(), |mut part| {
-        part.all(|i| {
-            let (h, delta) = (data.h[i], data.delta[i]);
-            let c = || coefficients(h, delta, [d[i], s[i]], [d[i + 1], s[i + 1]]);
-            is_flat(delta) || certified_nonnegative(&c(), 16.0 * f64::EPSILON)
+    /// Segments looked at together; only where one of them is in doubt, one by one.
+    const TILE: usize = 64;
+    const TOLERANCE: f64 = 16.0 * f64::EPSILON;
+    let of = |h: f64, delta: f64, v0: [f64; 2], v1: [f64; 2]| {
+        let c = coefficients(h, delta, v0, v1);
+        (c, is_flat(delta))
+    };
+    let all = parts(data.len(), |part| {
+        part.clone().step_by(TILE).all(|from| {
+            let n = TILE.min(part.end - from);
+            let (h, delta) = (&data.h[from..from + n], &data.delta[from..from + n]);
+            let (d, s) = (&d[from..=from + n], &s[from..=from + n]);
+            let at = |i: usize| of(h[i], delta[i], [d[i], s[i]], [d[i + 1], s[i + 1]]);
+            let sure = (0..n).fold(true, |all, i| {
+                let (c, flat) = at(i);
+                let positive = c.iter().fold(true, |all, c| all & (c + TOLERANCE >= 0.0));
+                all & (positive | flat)
+            });
+            sure || (0..n).all(|i| {
+                let (c, flat) = at(i);
+                flat || certified_nonnegative(&c, TOLERANCE)
+            })
         })
     });
     all.iter().all(|certified| *certified)

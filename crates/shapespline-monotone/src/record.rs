@@ -1,5 +1,7 @@
 //! One segment as it is evaluated: a cache line of numbers that keeps the ends exact.
 
+use rayon::prelude::*;
+
 /// `f(t) = y₀ + Δy t + t(t−1) q(2t−1)` with a cubic q: every polynomial of degree five through the two data points.
 ///
 /// The form interpolates structurally, its coefficients are of the size of Δy (power forms about an end have them
@@ -16,26 +18,40 @@ pub(crate) struct Record {
 }
 
 impl Record {
-    /// From end slopes `m = h y'` and second derivatives `k = h² y''` in units of y.
-    #[inline]
-    pub(crate) fn hermite(x0: f64, x1: f64, y0: f64, y1: f64, m: [f64; 2], k: [f64; 2]) -> Self {
-        let dy = y1 - y0;
+    /// q from Δy, end slopes `m = h y'` and second derivatives `k = h² y''` in units of y.
+    #[inline(always)]
+    pub(crate) fn hermite_form(dy: f64, m: [f64; 2], k: [f64; 2]) -> [f64; 4] {
         // Q(0) = Δy − m₀, Q(1) = m₁ − Δy, Q'(0) = Q(0) − k₀/2, Q'(1) = k₁/2 − Q(1); derivatives by z = 2t−1.
         let (p, r) = (dy - m[0], m[1] - dy);
         let (dp, dr) = (0.5 * (p - 0.5 * k[0]), 0.5 * (0.5 * k[1] - r));
         let (even, odd) = (0.25 * (dr - dp), 0.25 * (dr + dp));
-        let q = [0.5 * (p + r) - even, 0.75 * (r - p) - odd, even, odd - 0.25 * (r - p)];
-        Self { x0, h: x1 - x0, y: [y0, y1], q }
+        [0.5 * (p + r) - even, 0.75 * (r - p) - odd, even, odd - 0.25 * (r - p)]
     }
 
-    /// The quartic (3) from end slopes `m = h y'` and `e = ⅔(αm₀ − βm₁)`.
-    #[inline]
-    pub(crate) fn quartic(x0: f64, x1: f64, y0: f64, y1: f64, m: [f64; 2], e: f64) -> Self {
-        let dy = y1 - y0;
+    /// The first three of q for the quartic (3) from Δy, end slopes `m = h y'` and `e = ⅔(αm₀ − βm₁)`; the last is 0.
+    #[inline(always)]
+    pub(crate) fn quartic_form(dy: f64, m: [f64; 2], e: f64) -> [f64; 3] {
         let (p, r) = (dy - m[0], m[1] - dy);
         let middle = -0.25 * (m[0] - m[1] + 1.5 * e);
-        let q = [middle, 0.5 * (r - p), 0.5 * (p + r) - middle, 0.0];
-        Self { x0, h: x1 - x0, y: [y0, y1], q }
+        [middle, 0.5 * (r - p), 0.5 * (p + r) - middle]
+    }
+
+    /// The records of a tile between points, from their q number by number; those after the last are of no meaning.
+    #[inline(always)]
+    pub(crate) fn assembled(x: &[f64], y: &[f64], q: &[[f64; TILE]; 4]) -> [Self; TILE] {
+        let mut records = [Self::default(); TILE];
+        let points = x.windows(2).zip(y.windows(2));
+        // Number by number: a record that is made first and moved then is read before it is written out.
+        for (j, (record, (x, y))) in records.iter_mut().zip(points).enumerate() {
+            record.x0 = x[0];
+            record.h = x[1] - x[0];
+            record.y[0] = y[0];
+            record.y[1] = y[1];
+            for k in 0..4 {
+                record.q[k] = q[k][j];
+            }
+        }
+        records
     }
 
     #[inline]
@@ -105,13 +121,37 @@ impl Record {
     }
 }
 
+/// Segments whose records one item of a parallel loop makes, and items that one thread makes at least.
+pub(crate) const TILE: usize = 64;
+const TILES: usize = 128;
+
+/// The records of `n` segments, tile by tile: `tile(start, count)` makes those of a tile, and what it will after the
+/// first `count`. On all threads where there are many, without the detour over zeros.
+#[inline]
+pub(crate) fn records(
+    n: usize,
+    tile: impl Fn(usize, usize) -> [Record; TILE] + Sync,
+) -> Vec<Record> {
+    let one = |k: usize| tile(k * TILE, TILE.min(n - k * TILE));
+    let count = n.div_ceil(TILE);
+    let tiles: Vec<[Record; TILE]> = if count <= 2 * TILES {
+        (0..count).map(one).collect()
+    } else {
+        (0..count).into_par_iter().with_min_len(TILES).map(one).collect()
+    };
+    let mut records = tiles.into_flattened();
+    records.truncate(n);
+    records
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
     fn hermite_data_come_back() {
-        let r = Record::hermite(1.0, 3.0, 2.0, 5.0, [0.7, 1.9], [-0.4, 2.2]);
+        let q = Record::hermite_form(3.0, [0.7, 1.9], [-0.4, 2.2]);
+        let r = Record { x0: 1.0, h: 2.0, y: [2.0, 5.0], q };
         // The residual is measured from the nearer end and jumps by Δy in the middle: differences stay on one side.
         let f = |t: f64| r.raw(t);
         assert_eq!((f(0.0), f(1.0)), (2.0, 5.0));
@@ -126,7 +166,8 @@ mod tests {
     #[test]
     fn quartic_matches_its_bernstein_form() {
         let (m, e) = ([0.7, 1.9], 0.35);
-        let r = Record::quartic(0.0, 1.0, 2.0, 5.0, m, e);
+        let [q0, q1, q2] = Record::quartic_form(3.0, m, e);
+        let r = Record { x0: 0.0, h: 1.0, y: [2.0, 5.0], q: [q0, q1, q2, 0.0] };
         let b = [2.0, 2.0 + m[0] / 4.0, 3.5 + e / 4.0, 5.0 - m[1] / 4.0, 5.0];
         for k in 0..=20 {
             let t = f64::from(k) / 20.0;

@@ -2,10 +2,8 @@
 #![allow(clippy::unwrap_used)]
 
 use crate::data::Data;
-use crate::energy::{Fairness, HESSIAN, is_flat, weight};
-use crate::optimal::parts::{gradient, rows};
-use crate::quartic_form::basis;
-use crate::slopes::sign;
+use crate::energy::Fairness;
+use crate::optimal::parts::Quadratic;
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{
     DefaultSettingsBuilder, DefaultSolver, IPSolver, NonnegativeConeT, ZeroConeT,
@@ -64,44 +62,9 @@ pub(crate) fn quadratic(
 
 /// Optimal slopes and second derivatives with the conditions on 2^`level` parts of every segment; scaled units.
 pub(crate) fn optimal(data: &Data, fairness: Fairness, level: u8) -> (Vec<f64>, Vec<f64>, u32) {
-    let n = data.len();
-    let size = 2 * (n + 1);
-    let (mut p, mut q) = (Vec::new(), vec![0.0; size]);
-    let (mut equal, mut positive) = (Vec::new(), Vec::new());
-    for i in 0..n {
-        let (h, delta) = (data.h[i], data.delta[i]);
-        let index = [2 * i, 2 * i + 1, 2 * i + 2, 2 * i + 3];
-        if is_flat(delta) {
-            equal.extend(index.iter().map(|&j| (vec![(j, 1.0)], 0.0)));
-            continue;
-        }
-        if i > 0 && sign(delta) * sign(data.delta[i - 1]) < 0.0 {
-            equal.push((vec![(2 * i, 1.0)], 0.0));
-        }
-        let scale = [1.0 / delta, 0.25 * h / delta, 1.0 / delta, 0.25 * h / delta];
-        let w = weight(fairness, h, delta) / 35.0;
-        for j in 0..4 {
-            for k in 0..4 {
-                p.push((index[j], index[k], w * HESSIAN[j][k] * scale[j] * scale[k]));
-                if k % 2 == 0 {
-                    q[index[j]] -= w * HESSIAN[j][k] * scale[j];
-                }
-            }
-        }
-        let parts = f64::from(1u32 << level);
-        for part in 0..1u32 << level {
-            let (from, to) = (f64::from(part) / parts, f64::from(part + 1) / parts);
-            for row in std::iter::once(basis(from)).chain(rows(from, to)) {
-                let gradient = gradient(&row);
-                // value = row·(1,…,1) + gradient·(a, b, …) with a = d/Δ − 1.
-                let constant = 1.0 - gradient[0] - gradient[2];
-                debug_assert!((row.iter().sum::<f64>() - 1.0).abs() < 1e-12);
-                positive
-                    .push(((0..4).map(|j| (index[j], gradient[j] * scale[j])).collect(), constant));
-            }
-        }
-    }
-    let (x, iterations) = quadratic(size, p, &q, &equal, &positive);
+    let Quadratic { hessian, linear, fixed, positive } = Quadratic::of(data, fairness, level);
+    let equal: Vec<_> = fixed.iter().map(|&j| (vec![(j, 1.0)], 0.0)).collect();
+    let (x, iterations) = quadratic(linear.len(), hessian, &linear, &equal, &positive);
     (
         x.iter().step_by(2).copied().collect(),
         x.iter().skip(1).step_by(2).copied().collect(),

@@ -3,7 +3,7 @@
 //! Everything is in signed, scaled units; decreasing data are the reflection of increasing ones because every
 //! formula here is odd in Δ.
 
-use crate::data::{Data, numbers};
+use crate::data::{Data, parts_mut};
 
 /// The sign of a segment or of the zero slope: −1, 0, 1.
 #[inline]
@@ -18,15 +18,16 @@ pub(crate) fn sign(value: f64) -> f64 {
 }
 
 /// The harmonic mean `2Δₐ Δᵦ/(Δₐ + Δᵦ)` of secants of one sign, 0 otherwise.
-#[inline]
+#[inline(always)]
 pub(crate) fn harmonic(a: f64, b: f64) -> f64 {
-    if (a > 0.0 && b > 0.0) || (a < 0.0 && b < 0.0) {
-        // Through the reciprocals' sum no product of secants is formed: it could over- or underflow.
-        let (small, large) = if a.abs() < b.abs() { (a, b) } else { (b, a) };
-        2.0 * small / (1.0 + small / large)
-    } else {
-        0.0
-    }
+    // Selections, not branches: done for several nodes at once. Through the reciprocals' sum no product of secants is
+    // formed: it could over- or underflow.
+    let less = a.abs() < b.abs();
+    let (small, large) = (if less { a } else { b }, if less { b } else { a });
+    let mean = 2.0 * small / (1.0 + small / large);
+    let (low, high) = (if a < b { a } else { b }, if a < b { b } else { a });
+    let rising = if low > 0.0 { mean } else { 0.0 };
+    if high < 0.0 { mean } else { rising }
 }
 
 /// The paper's end slope: the three-point formula `(1 + Δ₀/Δ₁)Δ₀ − (Δ₀/Δ₁)(y₂−y₀)/(x₂−x₀)` clamped to [0, 2Δ₀],
@@ -58,7 +59,13 @@ pub(crate) fn fritsch_butland(data: &Data) -> Vec<f64> {
         // Two points: the line.
         return vec![delta[0]; 2];
     }
-    let mut d = numbers(n + 1, |i| harmonic(delta[i.max(1) - 1], delta[i.min(n - 1)]));
+    let mut d = vec![0.0; n + 1];
+    parts_mut(&mut d[1..n], |start, d| {
+        let neighbours = delta[start..].iter().zip(&delta[start + 1..]);
+        for (d, (a, b)) in d.iter_mut().zip(neighbours) {
+            *d = harmonic(*a, *b);
+        }
+    });
     d[0] = end(h[0], h[1], delta[0], delta[1]);
     d[n] = end(h[n - 1], h[n - 2], delta[n - 1], delta[n - 2]);
     d

@@ -6,13 +6,8 @@ use crate::integrals::Lazy;
 use crate::inverse::Inverse;
 use crate::locate::Locator;
 use crate::piecewise::PiecewisePolynomial;
-use crate::record::Record;
-use rayon::prelude::*;
+use crate::record::{self, Record, TILE};
 use std::sync::OnceLock;
-
-/// Segments whose records one item of the parallel loop makes, and items that one thread makes at least.
-const TILE: usize = 16;
-const TILES: usize = 256;
 
 /// What the pieces are beyond their end values and slopes.
 #[derive(Debug, Clone, PartialEq)]
@@ -103,37 +98,18 @@ impl MonotoneSpline {
         mut s: Vec<f64>,
         extrapolate: Extrapolation,
     ) -> Self {
-        let unit = units.y();
-        let records = records(x.len() - 1, |i| {
-            let h = units.spacing(&x, i);
-            let m = [unit.scale(h * d[i]), unit.scale(h * d[i + 1])];
-            let k = [unit.scale(h * (h * s[i])), unit.scale(h * (h * s[i + 1]))];
-            Record::hermite(x[i], x[i + 1], y[i], y[i + 1], m, k)
-        });
+        let tile = |start: usize, count: usize| {
+            // A length that is known beforehand: nearly all tiles are full.
+            if count == TILE {
+                quintic_records(units, &x[start..], &y[start..], &d[start..], &s[start..], TILE)
+            } else {
+                quintic_records(units, &x[start..], &y[start..], &d[start..], &s[start..], count)
+            }
+        };
+        let records = record::records(x.len() - 1, tile);
         units.slopes_out(&mut d);
         units.seconds_out(&mut s);
         let kind = Kind::Quintic { s };
-        Self { x, y, d, kind, records, extrapolate, cached: Cached::default() }
-    }
-
-    /// Of slopes and `e` in scaled units.
-    pub(crate) fn quartic(
-        units: Units,
-        x: Vec<f64>,
-        y: Vec<f64>,
-        mut d: Vec<f64>,
-        mut e: Vec<f64>,
-        extrapolate: Extrapolation,
-    ) -> Self {
-        let unit = units.y();
-        let records = records(x.len() - 1, |i| {
-            let h = units.spacing(&x, i);
-            let m = [unit.scale(h * d[i]), unit.scale(h * d[i + 1])];
-            Record::quartic(x[i], x[i + 1], y[i], y[i + 1], m, unit.scale(e[i]))
-        });
-        units.slopes_out(&mut d);
-        units.values_out(&mut e);
-        let kind = Kind::Quartic { e };
         Self { x, y, d, kind, records, extrapolate, cached: Cached::default() }
     }
 
@@ -223,18 +199,24 @@ impl MonotoneSpline {
     }
 }
 
-/// One record a segment; many are made in parallel, without the detour over zeros.
-fn records(n: usize, record: impl Fn(usize) -> Record + Sync) -> Vec<Record> {
-    if n <= 2 * TILE * TILES {
-        return (0..n).map(record).collect();
+/// The records of the first `n` segments, those of a tile; several are made at once.
+#[inline(always)]
+fn quintic_records(
+    units: Units,
+    x: &[f64],
+    y: &[f64],
+    d: &[f64],
+    s: &[f64],
+    n: usize,
+) -> [Record; TILE] {
+    let (x, y, d, s) = (&x[..=n], &y[..=n], &d[..=n], &s[..=n]);
+    let (unit, to_x) = (units.y(), units.spacing());
+    let mut q = [[0.0; TILE]; 4];
+    for j in 0..n {
+        let h = to_x.scale(x[j + 1] - x[j]);
+        let m = [unit.scale(h * d[j]), unit.scale(h * d[j + 1])];
+        let k = [unit.scale(h * (h * s[j])), unit.scale(h * (h * s[j + 1]))];
+        [q[0][j], q[1][j], q[2][j], q[3][j]] = Record::hermite_form(y[j + 1] - y[j], m, k);
     }
-    let tiles: Vec<[Record; TILE]> = (0..n.div_ceil(TILE))
-        .into_par_iter()
-        .with_min_len(TILES)
-        // The places after the last segment repeat it, and are cut off below.
-        .map(|tile| std::array::from_fn(|j| record((tile * TILE + j).min(n - 1))))
-        .collect();
-    let mut records = tiles.into_flattened();
-    records.truncate(n);
-    records
+    Record::assembled(x, y, &q)
 }

@@ -1,6 +1,8 @@
+//! Monotone interpolation in Python.
 //!
 //! [`function`] is what every function can do, [`spline`] what the interpolants add, [`families`] their
-//! constructors; [`layout`] brings arrays with an axis to columns and back.
+//! constructors; [`layout`] brings arrays with an axis to columns and back. [`rows`] are many functions, each with knots
+//! of its own, [`places`] where they are asked, and [`many`] makes them.
 
 use pyo3::{PyClass, prelude::*};
 
@@ -12,7 +14,9 @@ mod families;
 mod fits;
 mod function;
 mod layout;
+mod many;
 mod options;
+mod places;
 mod rows;
 mod spline;
 
@@ -27,7 +31,7 @@ pub(crate) fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<rows::MonotoneRows>()?;
     module.add_function(wrap_pyfunction!(function::_function_from_bytes, module)?)?;
     module.add_function(wrap_pyfunction!(rows::_rows_from_bytes, module)?)?;
-    module.add_function(wrap_pyfunction!(rows::fit_many_monotone, module)?)?;
+    module.add_function(wrap_pyfunction!(many::fit_many_monotone, module)?)?;
     module.add_function(wrap_pyfunction!(bezier_like::bezier_like, module)?)?;
     document_call::<function::PiecewisePolynomial>(module.py())?;
     document_call::<rows::PiecewiseRows>(module.py())

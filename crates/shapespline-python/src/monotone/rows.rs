@@ -1,30 +1,28 @@
-//! Many data sets with their own x in one call: `fit_many_monotone`.
+//! Functions of many rows, each with its own knots.
 
 use std::sync::Arc;
 
 use pyo3::{
     PyClassInitializer,
-    exceptions::{PyIndexError, PyTypeError, PyValueError},
+    exceptions::{PyIndexError, PyTypeError},
     prelude::*,
     types::PyBytes,
 };
-use shapespline::monotone::{
-    self, Extrapolation, Fairness, MonotoneError, QuarticOptions, QuinticOptions, Shape, Slopes,
-};
+use shapespline::monotone::{Extrapolation, MonotoneError};
 
 use super::{
     diagnostics::MonotoneDiagnostics,
-    fits::{Column, Fits, fit_all},
+    fits::{Column, Fits},
     function::{PiecewisePolynomial, damaged, read},
     layout::Layout,
-    options::{self, SlopesOption, monotone_error},
+    options::{self, monotone_error},
+    places::{Arrangement, Places, end},
     spline::{diagnostics, energies},
 };
 use crate::{
-    input::{Array, Numbers, Offsets, Query, array, kind, numbers, text},
-    options::choose,
+    input::Offsets,
     output::{FloatArray, shaped},
-    work::{GoOn, detached},
+    work::detached,
 };
 
 /// Functions of many rows, each with its own knots: the base of `MonotoneRows`.
@@ -45,8 +43,12 @@ pub(crate) struct PiecewiseRows {
 }
 
 impl PiecewiseRows {
+    pub(super) fn of(fits: Fits) -> Self {
+        Self { fits: Arc::new(fits) }
+    }
+
     /// The object of the class that the fits are of.
-    fn into_python(self, py: Python<'_>) -> PyResult<Py<PyAny>> {
+    pub(super) fn into_python(self, py: Python<'_>) -> PyResult<Py<PyAny>> {
         let pieces = matches!(*self.fits, Fits::Pieces(_));
         let base = PyClassInitializer::from(self);
         Ok(if pieces {
@@ -75,107 +77,6 @@ impl PiecewiseRows {
             Arrangement::Each(n) => shaped(py, found, &[rows, *n]),
             Arrangement::Ragged(_) => shaped(py, found, &[values.len()]),
         }
-    }
-}
-
-/// Places for every row, as they come in.
-struct Places<'py> {
-    query: Query<'py>,
-    one: [f64; 1],
-    arrangement: Arrangement,
-}
-
-enum Arrangement {
-    /// One number for all rows.
-    One,
-    /// The same numbers for all rows.
-    Same,
-    /// So many numbers for each row.
-    Each(usize),
-    /// Its own numbers for each row: where they begin.
-    Ragged(Vec<usize>),
-}
-
-impl<'py> Places<'py> {
-    fn of(
-        argument: &str,
-        object: &Bound<'py, PyAny>,
-        offsets: Option<Offsets>,
-        rows: usize,
-    ) -> PyResult<Self> {
-        let query = Query::named(argument, object)?;
-        let (shape, text, length) = match &query {
-            Query::One(_) => (Vec::new(), "()".to_owned(), 1),
-            Query::Many(x) => (x.shape().to_vec(), x.shape_text(), x.values().len()),
-        };
-        let arrangement = match (&shape[..], offsets) {
-            ([_], Some(Offsets(bounds))) => {
-                check_offsets(&bounds, length)?;
-                if bounds.len() != rows + 1 {
-                    return Err(PyValueError::new_err(format!(
-                        "offsets must have {} entries for {rows} rows, got {}",
-                        rows + 1,
-                        bounds.len()
-                    )));
-                }
-                Arrangement::Ragged(bounds)
-            }
-            (_, Some(_)) => {
-                return Err(PyValueError::new_err(format!(
-                    "with offsets, {argument} must have one axis; got shape {text}"
-                )));
-            }
-            ([], None) => Arrangement::One,
-            ([_], None) => Arrangement::Same,
-            ([m, n], None) if *m == rows => Arrangement::Each(*n),
-            _ => {
-                return Err(PyValueError::new_err(format!(
-                    "{argument} must be a number, have one axis, or be of shape ({rows}, n): a row \
-                     for each; got shape {text}"
-                )));
-            }
-        };
-        let one = [if let Query::One(x) = query { x } else { f64::NAN }];
-        Ok(Self { query, one, arrangement })
-    }
-
-    fn values(&self) -> &[f64] {
-        match &self.query {
-            Query::One(_) => &self.one,
-            Query::Many(x) => x.values(),
-        }
-    }
-}
-
-impl Arrangement {
-    /// Those of all the places that are row k's.
-    fn row<'a>(&self, values: &'a [f64], k: usize) -> &'a [f64] {
-        match self {
-            Self::One | Self::Same => values,
-            Self::Each(n) => &values[k * n..(k + 1) * n],
-            Self::Ragged(bounds) => &values[bounds[k]..bounds[k + 1]],
-        }
-    }
-}
-
-/// The end of an integral: a number, or one a row.
-fn end(argument: &str, object: &Bound<'_, PyAny>, rows: usize) -> PyResult<Vec<f64>> {
-    let values = match numbers(argument, object)? {
-        Numbers::One(value) => vec![value; rows],
-        Numbers::Many(values) if values.len() == rows => values,
-        Numbers::Many(values) => {
-            return Err(PyValueError::new_err(format!(
-                "{argument} must be a number or one for each of {rows} rows, got {}",
-                values.len()
-            )));
-        }
-    };
-    match values.iter().position(|v| !v.is_finite()) {
-        None => Ok(values),
-        Some(row) => Err(PyValueError::new_err(format!(
-            "{argument} must be finite, got {} for row {row}",
-            values[row]
-        ))),
     }
 }
 
@@ -269,7 +170,7 @@ impl PiecewiseRows {
     ) -> PyResult<Py<PyAny>> {
         // One beyond the degree all are zero.
         let nu = nu.min(self.fits.column(0).degree() + 1);
-        Self { fits: Arc::new(self.fits.derivative(py, nu)) }.into_python(py)
+        Self::of(self.fits.derivative(py, nu)).into_python(py)
     }
 
     /// Antiderivatives of all rows as functions: zero at their first knots.
@@ -296,7 +197,7 @@ impl PiecewiseRows {
         py: Python<'_>,
         #[pyo3(from_py_with = options::integrals)] nu: usize,
     ) -> PyResult<Py<PyAny>> {
-        Self { fits: Arc::new(self.fits.antiderivative(py, nu)) }.into_python(py)
+        Self::of(self.fits.antiderivative(py, nu)).into_python(py)
     }
 
     /// The definite integral of every row.
@@ -464,176 +365,5 @@ pub(crate) fn _rows_from_bytes(py: Python<'_>, data: &[u8]) -> PyResult<Py<PyAny
     if !fits.is_sound() {
         return Err(damaged("lengths do not agree"));
     }
-    PiecewiseRows { fits: Arc::new(fits) }.into_python(py)
-}
-
-/// Where the rows start, and where the last one ends.
-fn offsets_of(x: &Array<'_>, y: &Array<'_>, offsets: Option<Offsets>) -> PyResult<Vec<usize>> {
-    if x.shape() != y.shape() {
-        return Err(PyValueError::new_err(format!(
-            "x and y must have the same shape, got {} and {}",
-            x.shape_text(),
-            y.shape_text()
-        )));
-    }
-    let bounds = match (x.shape(), offsets) {
-        (&[rows, n], None) => (0..=rows).map(|k| k * n).collect(),
-        ([_], Some(Offsets(bounds))) => bounds,
-        (_, None) => {
-            return Err(PyValueError::new_err(format!(
-                "x and y must have two axes, or one and offsets; got shape {}",
-                x.shape_text()
-            )));
-        }
-        (_, Some(_)) => {
-            return Err(PyValueError::new_err(format!(
-                "with offsets, x and y must have one axis; got shape {}",
-                x.shape_text()
-            )));
-        }
-    };
-    check_offsets(&bounds, x.values().len())?;
-    if bounds.len() < 2 {
-        return Err(PyValueError::new_err("there must be at least one row, got none"));
-    }
-    Ok(bounds)
-}
-
-/// Offsets begin at 0, do not fall, and end at the length of what they cut.
-fn check_offsets(bounds: &[usize], length: usize) -> PyResult<()> {
-    let wrong = (0..bounds.len()).find(|&i| {
-        let (first, last) = (i == 0, i + 1 == bounds.len());
-        first && bounds[i] != 0
-            || !first && bounds[i] < bounds[i - 1]
-            || last && bounds[i] != length
-    });
-    match wrong {
-        None => Ok(()),
-        Some(index) => {
-            let error = MonotoneError::Offset { index, value: bounds[index], length };
-            Err(monotone_error(&error))
-        }
-    }
-}
-
-/// `kind`.
-#[derive(Clone, Copy)]
-pub(crate) enum Kind {
-    Quartic,
-    Quintic,
-}
-
-fn family(object: &Bound<'_, PyAny>) -> PyResult<Kind> {
-    let name = text(object).ok_or_else(|| {
-        pyo3::exceptions::PyTypeError::new_err(format!(
-            "kind must be a string, got {}",
-            kind(object)
-        ))
-    })?;
-    choose("kind", &name, &[("quintic", Kind::Quintic), ("quartic", Kind::Quartic)])
-}
-
-fn slopes(object: &Bound<'_, PyAny>) -> PyResult<Option<SlopesOption>> {
-    if object.is_none() { Ok(None) } else { options::slopes(object).map(Some) }
-}
-
-/// Fit monotone interpolants to many rows, each with its own x, in parallel.
-///
-/// Parameters
-/// ----------
-/// x, y : array_like, shape (rows, n) or (total,)
-///     Row by row; or all rows one after another, with ``offsets``.
-/// kind : {"quintic", "quartic"}
-///     `MonotoneQuintic` or `MonotoneQuartic`.
-/// offsets : array_like of int, shape (rows + 1,), optional
-///     Row k is ``x[offsets[k]:offsets[k + 1]]``, and so for y.
-/// slopes : {"optimal", "fritsch-butland"} or array_like, in the shape of y, optional
-///     As for the kind; None is its own default.
-/// fairness : {"bending", "parametric"}
-///     Of the quintic.
-/// shape : float
-///     Of the quartic.
-/// extrapolate : {None, True, False, "linear", "clip"}
-///     As for `MonotoneQuintic`.
-///
-/// Returns
-/// -------
-/// MonotoneRows
-///     Evaluates row by row; indexing gives the interpolant of a row.
-///
-/// Raises
-/// ------
-/// ValueError, TypeError
-///     As for the kind; the message names the row.
-///
-/// Notes
-/// -----
-/// Paper 003, see `MonotoneQuintic` and `MonotoneQuartic`. Cost O(total), on all threads.
-///
-/// Examples
-/// --------
-/// >>> import shapespline as ss
-/// >>> f = ss.fit_many_monotone([0, 1, 2, 0, 3], [0, 1, 2, 0, 6], offsets=[0, 3, 5])
-/// >>> f(1.0)
-/// array([1., 2.])
-#[pyfunction]
-#[pyo3(
-    signature = (x, y, kind=Kind::Quintic, *, offsets=None, slopes=None,
-                 fairness=Fairness::Bending, shape=Shape::Uniform(3.0), extrapolate=None),
-    text_signature = "(x, y, kind='quintic', *, offsets=None, slopes=None, fairness='bending', \
-                      shape=3.0, extrapolate=None)"
-)]
-// One argument a keyword: this is the signature that users see.
-#[allow(clippy::too_many_arguments)]
-pub(crate) fn fit_many_monotone(
-    py: Python<'_>,
-    x: &Bound<'_, PyAny>,
-    y: &Bound<'_, PyAny>,
-    #[pyo3(from_py_with = family)] kind: Kind,
-    offsets: Option<Offsets>,
-    #[pyo3(from_py_with = slopes)] slopes: Option<SlopesOption>,
-    #[pyo3(from_py_with = options::fairness)] fairness: Fairness,
-    #[pyo3(from_py_with = options::shape)] shape: Shape,
-    #[pyo3(from_py_with = options::extrapolate)] extrapolate: Option<Extrapolation>,
-) -> PyResult<Py<PyAny>> {
-    let (x, y) = (array("x", x)?, array("y", y)?);
-    let bounds = offsets_of(&x, &y, offsets)?;
-    if let Some(SlopesOption::Given { shape, .. }) = &slopes
-        && shape != y.shape()
-    {
-        return Err(PyValueError::new_err(format!(
-            "slopes must have the shape of y, {}, got {shape:?}",
-            y.shape_text()
-        )));
-    }
-    let (x, y) = (x.values(), y.values());
-    let of = |from: usize, to: usize| match (&slopes, kind) {
-        (Some(SlopesOption::Given { values, .. }), _) => Slopes::Given(values[from..to].to_vec()),
-        (Some(SlopesOption::Optimal), _) | (None, Kind::Quintic) => Slopes::Optimal,
-        _ => Slopes::FritschButland,
-    };
-    let extrapolate = extrapolate.unwrap_or_default();
-    let fits = match kind {
-        Kind::Quintic => Fits::Quintic(fit_rows(py, &bounds, |from, to, go_on| {
-            let options = QuinticOptions { slopes: of(from, to), fairness, extrapolate };
-            monotone::MonotoneQuintic::new_with(&x[from..to], &y[from..to], &options, go_on)
-        })?),
-        Kind::Quartic => Fits::Quartic(fit_rows(py, &bounds, |from, to, _| {
-            let slopes = of(from, to);
-            let options = QuarticOptions { slopes, shape: shape.clone(), extrapolate };
-            monotone::MonotoneQuartic::new(&x[from..to], &y[from..to], &options)
-        })?),
-    };
-    PiecewiseRows { fits: Arc::new(fits) }.into_python(py)
-}
-
-fn fit_rows<F: Send>(
-    py: Python<'_>,
-    bounds: &[usize],
-    fit: impl Fn(usize, usize, GoOn<'_>) -> Result<F, MonotoneError> + Send + Sync,
-) -> PyResult<Vec<F>> {
-    let (rows, size) = (bounds.len() - 1, bounds[bounds.len() - 1]);
-    fit_all(py, size, rows, |k, go_on| fit(bounds[k], bounds[k + 1], go_on))?.map_err(
-        |(row, source)| monotone_error(&MonotoneError::InRow { row, source: Box::new(source) }),
-    )
+    PiecewiseRows::of(fits).into_python(py)
 }

@@ -1,0 +1,125 @@
+//! Places at which many rows are asked: one for all, the same for each, or its own for each.
+
+use pyo3::{exceptions::PyValueError, prelude::*};
+use shapespline::monotone::MonotoneError;
+
+use super::options::monotone_error;
+use crate::input::{Numbers, Offsets, Query, numbers};
+
+/// Places for every row, as they come in.
+pub(super) struct Places<'py> {
+    query: Query<'py>,
+    one: [f64; 1],
+    pub(super) arrangement: Arrangement,
+}
+
+pub(super) enum Arrangement {
+    /// One number for all rows.
+    One,
+    /// The same numbers for all rows.
+    Same,
+    /// So many numbers for each row.
+    Each(usize),
+    /// Its own numbers for each row: where they begin.
+    Ragged(Vec<usize>),
+}
+
+impl<'py> Places<'py> {
+    pub(super) fn of(
+        argument: &str,
+        object: &Bound<'py, PyAny>,
+        offsets: Option<Offsets>,
+        rows: usize,
+    ) -> PyResult<Self> {
+        let query = Query::named(argument, object)?;
+        let (shape, text, length) = match &query {
+            Query::One(_) => (Vec::new(), "()".to_owned(), 1),
+            Query::Many(x) => (x.shape().to_vec(), x.shape_text(), x.values().len()),
+        };
+        let arrangement = match (&shape[..], offsets) {
+            ([_], Some(Offsets(bounds))) => {
+                check_offsets(&bounds, length)?;
+                if bounds.len() != rows + 1 {
+                    return Err(PyValueError::new_err(format!(
+                        "offsets must have {} entries for {rows} rows, got {}",
+                        rows + 1,
+                        bounds.len()
+                    )));
+                }
+                Arrangement::Ragged(bounds)
+            }
+            (_, Some(_)) => {
+                return Err(PyValueError::new_err(format!(
+                    "with offsets, {argument} must have one axis; got shape {text}"
+                )));
+            }
+            ([], None) => Arrangement::One,
+            ([_], None) => Arrangement::Same,
+            ([m, n], None) if *m == rows => Arrangement::Each(*n),
+            _ => {
+                return Err(PyValueError::new_err(format!(
+                    "{argument} must be a number, have one axis, or be of shape ({rows}, n): a row \
+                     for each; got shape {text}"
+                )));
+            }
+        };
+        let one = [if let Query::One(x) = query { x } else { f64::NAN }];
+        Ok(Self { query, one, arrangement })
+    }
+
+    pub(super) fn values(&self) -> &[f64] {
+        match &self.query {
+            Query::One(_) => &self.one,
+            Query::Many(x) => x.values(),
+        }
+    }
+}
+
+impl Arrangement {
+    /// Those of all the places that are row k's.
+    pub(super) fn row<'a>(&self, values: &'a [f64], k: usize) -> &'a [f64] {
+        match self {
+            Self::One | Self::Same => values,
+            Self::Each(n) => &values[k * n..(k + 1) * n],
+            Self::Ragged(bounds) => &values[bounds[k]..bounds[k + 1]],
+        }
+    }
+}
+
+/// The end of an integral: a number, or one a row.
+pub(super) fn end(argument: &str, object: &Bound<'_, PyAny>, rows: usize) -> PyResult<Vec<f64>> {
+    let values = match numbers(argument, object)? {
+        Numbers::One(value) => vec![value; rows],
+        Numbers::Many(values) if values.len() == rows => values,
+        Numbers::Many(values) => {
+            return Err(PyValueError::new_err(format!(
+                "{argument} must be a number or one for each of {rows} rows, got {}",
+                values.len()
+            )));
+        }
+    };
+    match values.iter().position(|v| !v.is_finite()) {
+        None => Ok(values),
+        Some(row) => Err(PyValueError::new_err(format!(
+            "{argument} must be finite, got {} for row {row}",
+            values[row]
+        ))),
+    }
+}
+
+/// Offsets begin at 0, do not fall, and end at the length of what they cut.
+pub(super) fn check_offsets(bounds: &[usize], length: usize) -> PyResult<()> {
+    let wrong = (0..bounds.len()).find(|&i| {
+        let (first, last) = (i == 0, i + 1 == bounds.len());
+        first && bounds[i] != 0
+            || !first && bounds[i] < bounds[i - 1]
+            || last && bounds[i] != length
+    });
+    match wrong {
+        None => Ok(()),
+        Some(index) => {
+            let error = MonotoneError::Offset { index, value: bounds[index], length };
+            Err(monotone_error(&error))
+        }
+    }
+}
