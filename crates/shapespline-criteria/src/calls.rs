@@ -162,7 +162,7 @@ impl Calls {
         for j in 0..stretch.less(2) {
             let [p, q] = [binormals.get(j), binormals.get(j + 1)];
             let (gamma, ends) = (p.dot(directions.get(j + 2)), [sines[j], sines[j + 1]]);
-            calls[j + 1] = Self(of_signs(gamma, p.dot(q), ends, zero) & wanted.0);
+            calls[j + 1] = Self(of_signs(gamma, p.dot(q), ends, zero));
             special[j + 1] = (planes & u64::from(gamma.abs() <= zero))
                 | u64::from(ends[0] <= zero)
                 | u64::from(ends[1] <= zero);
@@ -172,13 +172,16 @@ impl Calls {
         for j in (1..segments.start).chain(segments.end..places - 1) {
             (calls[j], special[j]) = (Self::default(), 0);
         }
-        if any == 0 {
-            return;
+        if any > 0 {
+            for j in (1..places - 1).filter(|&j| special[j] != 0) {
+                let (i, around) = (stretch.segment(polygon, j), [j - 1, j, j + 1]);
+                let around = around.map(|j| directions.get(j));
+                calls[j] = calls[j].and(of_zeros(polygon, i, around, calls[j], tolerances));
+            }
         }
-        for j in (1..places - 1).filter(|&j| special[j] != 0) {
-            let around = [j - 1, j, j + 1].map(|j| directions.get(j));
-            let rest = of_zeros(polygon, stretch.segment(polygon, j), around, calls[j], tolerances);
-            calls[j].0 |= rest.0 & wanted.0;
+        // Last: whether a plane is asked for depends on a turn, asked for or not.
+        for calls in calls {
+            calls.0 &= wanted.0;
         }
     }
 

@@ -109,6 +109,13 @@ mod tests {
             stretch.load(&polygon, 0..n);
             local.calls(&stretch, &mut calls);
             assert_eq!(&calls[stretch.own()], checker.calls());
+            // One criterion alone is asked for where it is among all of them.
+            for criterion in Criterion::ALL {
+                let one = Criteria::NONE.with(criterion);
+                let alone = Checker::new(&polygon, one, tolerances);
+                let among = checker.calls().iter().map(|calls| calls.only(one));
+                assert!(alone.calls().iter().copied().eq(among));
+            }
             for scale in [0.1, 0.4, 1.0, 3.0] {
                 // Tilted, or torsion would never fail.
                 let slope = |node: usize| {

@@ -103,7 +103,7 @@ impl Stretch {
         let nodes = inside.start..=inside.end;
         let points = polygon.points()[nodes.clone()].windows(2);
         let parameters = polygon.parameters()[nodes].windows(2);
-        for (j, (p, u)) in (skip..places).zip(points.zip(parameters)) {
+        for (j, (p, u)) in (skip..self.less(0)).zip(points.zip(parameters)) {
             self.chords.set(j, p[1] - p[0]);
             self.spacings[j] = u[1] - u[0];
         }
