@@ -3,15 +3,10 @@
 use std::{convert::Infallible, ops::Range};
 
 use rayon::prelude::*;
-use shapespline_criteria::Calls;
 use shapespline_geometry::{DVec3, DataPolygon};
 use shapespline_search::{TensionFamily, velocity_weight};
 
-use crate::{
-    Continuity, HandleOptions,
-    bounds::{bounded, bounds},
-    tangents::tangent,
-};
+use crate::tangents::tangent;
 
 /// The legs of every segment. Closed forms have shortened them by `factors`; tension shortens them
 /// further, to `1/(1 + tension)`.
@@ -72,45 +67,6 @@ impl<'a> Handles<'a> {
         Self { polygon, legs, factors, tension: Vec::new() }.with_free_ends()
     }
 
-    /// The largest handles, up to the full ones, that stay below `safety` times the bounds which the
-    /// calls of the polygon put on them.
-    pub(crate) fn limited(
-        polygon: &'a DataPolygon,
-        calls: &[Calls],
-        options: &HandleOptions,
-    ) -> Self {
-        let HandleOptions { safety, continuity, .. } = *options;
-        let sine = options.tolerances.collinearity;
-        let cotangent = ((1.0 - sine) * (1.0 + sine)).sqrt() / sine;
-        let (n, closed) = (polygon.segments(), polygon.is_closed());
-        let legs = full_legs(polygon);
-        // Factors that each segment allows at its two ends.
-        let limits = each(n, |i| {
-            if !calls[i].any(bounded()) {
-                return [1.0; 2];
-            }
-            let on = bounds(polygon, i, calls[i], legs[i], cotangent);
-            on.map(|bound| f64::min(1.0, safety * bound))
-        });
-        // Factors of the legs before and after a node.
-        let joined = each(n + 1, |node| {
-            let (before, after) = match node {
-                0 if !closed => return [limits[0][0]; 2],
-                _ if node == n && !closed => return [limits[n - 1][1]; 2],
-                _ if node == 0 || node == n => (n - 1, 0),
-                _ => (node - 1, node),
-            };
-            let (q, p) = (limits[before][1], limits[after][0]);
-            // In an inflecting coplanar segment the legs decide where it inflects: one factor a node.
-            let split = || calls[before].and(calls[after]).any(Calls::SPLIT_COPLANARITY);
-            let one = continuity == Continuity::C1 || split();
-            if one { [q.min(p); 2] } else { [q, p] }
-        });
-        let factors: Vec<f64> = joined[..polygon.nodes()].iter().map(|[q, p]| q.min(*p)).collect();
-        let legs = scaled(legs, |i| [joined[i][1], joined[i + 1][0]]);
-        Self { polygon, legs, factors, tension: Vec::new() }.with_free_ends()
-    }
-
     /// Handles that are known, ready for the search.
     pub(crate) fn under_tension(
         polygon: &'a DataPolygon,
@@ -119,16 +75,6 @@ impl<'a> Handles<'a> {
     ) -> Self {
         let tension = vec![0.0; factors.len()];
         Self { polygon, legs, factors, tension }
-    }
-
-    /// First and last leg of each segment, before any tension.
-    pub(crate) fn legs(&self) -> &[[DVec3; 2]] {
-        &self.legs
-    }
-
-    /// What closed forms shortened the handles at each distinct node by.
-    pub(crate) fn factors(&self) -> &[f64] {
-        &self.factors
     }
 
     /// Legs and factors, before any tension.
@@ -169,12 +115,20 @@ impl<'a> Handles<'a> {
         {
             return [a, c];
         }
-        let chord = self.polygon.chord(segment);
-        match (segment == 0, segment == last) {
-            (true, true) => [chord * (self.scale(0) / 3.0), chord * (self.scale(last + 1) / 3.0)],
-            (true, false) => [(chord - c) * (0.5 * self.scale(0)), c],
-            _ => [a, (chord - a) * (0.5 * self.scale(last + 1))],
-        }
+        let scale = |is_end: bool, node: usize| is_end.then(|| self.scale(node));
+        let free = [scale(segment == 0, 0), scale(segment == last, last + 1)];
+        freed(self.polygon.chord(segment), [a, c], free)
+    }
+}
+
+/// Legs of a segment, of which those at an end of zero curvature, of these scales, follow the other one.
+#[inline]
+pub(crate) fn freed(chord: DVec3, [a, c]: [DVec3; 2], free: [Option<f64>; 2]) -> [DVec3; 2] {
+    match free {
+        [Some(p), Some(q)] => [chord * (p / 3.0), chord * (q / 3.0)],
+        [Some(p), None] => [(chord - c) * (0.5 * p), c],
+        [None, Some(q)] => [a, (chord - a) * (0.5 * q)],
+        [None, None] => [a, c],
     }
 }
 

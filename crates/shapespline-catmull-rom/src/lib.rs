@@ -57,6 +57,7 @@ mod bounds;
 mod curve;
 mod handles;
 mod parts;
+mod stretch;
 mod tangents;
 
 pub use curve::{CatmullRom, Continuity, HandleOptions};

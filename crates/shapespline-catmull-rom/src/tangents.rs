@@ -14,9 +14,15 @@ pub(crate) fn tangent(polygon: &DataPolygon, node: usize) -> Option<DVec3> {
     } else {
         return polygon.tangents().map(|[start, end]| if node == 0 { start } else { end });
     };
-    let (h0, h1) = (polygon.spacing(before), polygon.spacing(after));
+    let chords = [polygon.chord(before), polygon.chord(after)];
+    Some(tangent_between(chords, [polygon.spacing(before), polygon.spacing(after)]))
+}
+
+/// The tangent between two chords, given the spacings of the parameters.
+#[inline(always)]
+pub(crate) fn tangent_between([before, after]: [DVec3; 2], [h0, h1]: [f64; 2]) -> DVec3 {
     // Halves first: the sum of two spacings can overflow where neither does.
     let reciprocal = 0.5 / (0.5 * h0 + 0.5 * h1);
     let ratio = h1 / h0;
-    Some(polygon.chord(before) * (ratio * reciprocal) + polygon.chord(after) * (reciprocal / ratio))
+    before * (ratio * reciprocal) + after * (reciprocal / ratio)
 }

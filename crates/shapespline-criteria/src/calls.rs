@@ -1,14 +1,19 @@
 //! What the polygon calls for: the index sets (5.34)–(5.39) of paper 001, with its zero tests made
 //! relative.
 
+use std::ops::Range;
+
 use glam::DVec3;
 use rayon::prelude::*;
-use shapespline_geometry::{Boundary, DataPolygon, Dimension, length};
+use shapespline_geometry::{Boundary, DataPolygon, Dimension, Stretch, length};
 
 use crate::{Criteria, Criterion, Tolerances};
 
 /// From two blocks of this many segments on all threads find the calls.
 const BLOCK: usize = 4096;
+
+/// The first segments that are asked whether the polygon is planar: most that are not say so at once.
+const FIRST: usize = 4;
 
 /// The conditions that a segment is asked to meet.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -50,7 +55,7 @@ impl Calls {
 
     /// The calls together.
     #[must_use]
-    pub fn and(self, other: Self) -> Self {
+    pub const fn and(self, other: Self) -> Self {
         Self(self.0 | other.0)
     }
 
@@ -83,36 +88,127 @@ impl Calls {
     #[must_use]
     pub fn of_polygon(polygon: &DataPolygon, tolerances: &Tolerances) -> Vec<Self> {
         let planar = Self::is_planar(polygon, tolerances);
-        Self::of_part(polygon, tolerances, planar, Criteria::EVERY)
+        Self::among(polygon, tolerances, planar, Criteria::EVERY)
     }
 
     /// Whether no segment has a torsion: in a planar polygon coplanarity is no question (paper 001,
     /// step 0.0). Cost O(N), and nearly none where the first segments answer.
     #[must_use]
     pub fn is_planar(polygon: &DataPolygon, tolerances: &Tolerances) -> bool {
-        let torsion = |i: usize| polygon.gamma(i).abs() > tolerances.zero;
-        polygon.dimension() == Dimension::Two || !(0..polygon.segments()).any(torsion)
+        let flat = |stretch: &mut Stretch, own: Range<usize>| {
+            stretch.load(polygon, own);
+            let (directions, binormals) = (stretch.directions(), stretch.binormals());
+            let mut turns = 0;
+            for j in 0..stretch.less(2 * Stretch::BESIDE) {
+                let gamma = binormals.get(j + 1).dot(directions.get(j + 3));
+                turns += u64::from(gamma.abs() > tolerances.zero);
+            }
+            turns == 0
+        };
+        let n = polygon.segments();
+        polygon.dimension() == Dimension::Two
+            || (flat(&mut Stretch::default(), 0..n.min(FIRST)) && all_stretches(n, flat))
     }
 
-    /// What each segment of a part of a polygon calls for among some criteria, where it is known
-    /// whether the whole polygon [is planar](Self::is_planar).
-    pub(crate) fn of_part(
-        part: &DataPolygon,
+    /// What each segment of a polygon calls for among some criteria, where it is known whether the
+    /// polygon [is planar](Self::is_planar).
+    pub(crate) fn among(
+        polygon: &DataPolygon,
         tolerances: &Tolerances,
         planar: bool,
         criteria: Criteria,
     ) -> Vec<Self> {
-        let mut wanted = Self::of_all(criteria);
-        if planar {
-            wanted.0 &= !Self::of(Criterion::Coplanarity).0;
-        }
-        let of = |i| Self(of_segment(part, i, tolerances).0 & wanted.0);
-        let n = part.segments();
+        let wanted = Self::wanted(criteria, planar);
+        let of = |stretch: &mut Stretch, (k, calls): (usize, &mut [Self])| {
+            let start = k * Stretch::OWN;
+            stretch.load(polygon, start..start + calls.len());
+            let mut all = [Self::default(); Stretch::ROOM];
+            Self::of_stretch(polygon, stretch, wanted, tolerances, &mut all);
+            calls.copy_from_slice(&all[stretch.own()]);
+        };
+        let n = polygon.segments();
+        let mut calls = vec![Self::default(); n];
         if n < 2 * BLOCK {
-            (0..n).map(of).collect()
+            let mut stretch = Stretch::default();
+            calls.chunks_mut(Stretch::OWN).enumerate().for_each(|own| of(&mut stretch, own));
         } else {
-            (0..n).into_par_iter().with_min_len(BLOCK).map(of).collect()
+            calls
+                .par_chunks_mut(Stretch::OWN)
+                .enumerate()
+                .with_min_len(BLOCK / Stretch::OWN)
+                .for_each_init(Stretch::default, of);
         }
+        calls
+    }
+
+    /// What the segments of a stretch call for, except at its first and its last place; nothing beyond
+    /// the ends of the polygon.
+    pub(crate) fn of_stretch(
+        polygon: &DataPolygon,
+        stretch: &Stretch,
+        wanted: Self,
+        tolerances: &Tolerances,
+        calls: &mut [Self; Stretch::ROOM],
+    ) {
+        let (places, zero) = (stretch.places(), tolerances.zero);
+        let (directions, binormals) = (stretch.directions(), stretch.binormals());
+        let mut sines = [0.0; Stretch::ROOM];
+        for j in 0..stretch.less(1) {
+            sines[j] = binormals.get(j).length();
+        }
+        let planes = u64::from(wanted.any(Self::of(Criterion::Coplanarity)));
+        let mut special = [0; Stretch::ROOM];
+        let mut any = 0;
+        for j in 0..stretch.less(2) {
+            let [p, q] = [binormals.get(j), binormals.get(j + 1)];
+            let (gamma, ends) = (p.dot(directions.get(j + 2)), [sines[j], sines[j + 1]]);
+            calls[j + 1] = Self(of_signs(gamma, p.dot(q), ends, zero));
+            special[j + 1] = (planes & u64::from(gamma.abs() <= zero))
+                | u64::from(ends[0] <= zero)
+                | u64::from(ends[1] <= zero);
+            any |= special[j + 1];
+        }
+        let segments = stretch.segments(polygon);
+        for j in (1..segments.start).chain(segments.end..places - 1) {
+            (calls[j], special[j]) = (Self::default(), 0);
+        }
+        if any > 0 {
+            for j in (1..places - 1).filter(|&j| special[j] != 0) {
+                let (i, around) = (stretch.segment(polygon, j), [j - 1, j, j + 1]);
+                let around = around.map(|j| directions.get(j));
+                calls[j] = calls[j].and(of_zeros(polygon, i, around, calls[j], tolerances));
+            }
+        }
+        // Last: whether a plane is asked for depends on a turn, asked for or not.
+        for calls in calls {
+            calls.0 &= wanted.0;
+        }
+    }
+
+    /// How many segments call for each criterion, in the order of [`Criterion::ALL`].
+    pub(crate) fn count(calls: &[Self]) -> [usize; 6] {
+        let mut counts = [0; 6];
+        // Numbers as short as the calls add up several at once.
+        for calls in calls.chunks(BLOCK) {
+            for (count, criterion) in counts.iter_mut().zip(Criterion::ALL) {
+                let of = Self::of(criterion);
+                let found: u16 = calls.iter().map(|calls| u16::from(calls.any(of))).sum();
+                *count += usize::from(found);
+            }
+        }
+        counts
+    }
+
+    /// The calls that belong to some criteria, in a polygon that is planar or not.
+    pub(crate) fn wanted(criteria: Criteria, planar: bool) -> Self {
+        let all = Self::of_all(criteria).0;
+        Self(if planar { all & !Self::of(Criterion::Coplanarity).0 } else { all })
+    }
+
+    /// The calls, for arithmetic on several segments at once.
+    #[inline(always)]
+    pub(crate) fn bits(self) -> u16 {
+        self.0
     }
 
     fn of_all(criteria: Criteria) -> Self {
@@ -120,39 +216,55 @@ impl Calls {
     }
 }
 
-#[inline]
-fn of_segment(polygon: &DataPolygon, i: usize, tolerances: &Tolerances) -> Calls {
-    let zero = tolerances.zero;
-    let chords @ [before, own, after] = polygon.directions_around(i);
+/// Whether all stretches of `count` segments pass a test, on all threads if there are many.
+fn all_stretches(
+    count: usize,
+    test: impl Fn(&mut Stretch, Range<usize>) -> bool + Sync + Send,
+) -> bool {
+    let own = |k: usize| k * Stretch::OWN..((k + 1) * Stretch::OWN).min(count);
+    let stretches = 0..count.div_ceil(Stretch::OWN);
+    if count < 2 * BLOCK {
+        let mut stretch = Stretch::default();
+        return stretches.into_iter().all(|k| test(&mut stretch, own(k)));
+    }
+    let stretches = stretches.into_par_iter().with_min_len(BLOCK / Stretch::OWN);
+    stretches.map_init(Stretch::default, |stretch, k| test(stretch, own(k))).all(|passes| passes)
+}
+
+/// What `Γ`, `P_m·P_{m+1}` and the sines of the turns call for. Without branches: most segments ask for
+/// nothing else.
+#[inline(always)]
+fn of_signs(gamma: f64, cosine: f64, sines: [f64; 2], zero: f64) -> u16 {
+    let call = |holds: bool, call: Calls| if holds { call.0 } else { 0 };
+    let turns = (sines[0] > zero) & (sines[1] > zero);
+    let small = zero * (sines[0] * sines[1]);
+    call(gamma > zero, Calls::RIGHT_TORSION)
+        | call(gamma < -zero, Calls::LEFT_TORSION)
+        | call(turns & (cosine > small), Calls::CONVEXITY.and(Calls::GLOBAL_CONVEXITY))
+        | call(turns & (cosine < -small), Calls::INFLECTION)
+}
+
+/// What a segment calls for where something is zero, beside what `of_signs` found.
+fn of_zeros(
+    polygon: &DataPolygon,
+    i: usize,
+    chords: [DVec3; 3],
+    signs: Calls,
+    tolerances: &Tolerances,
+) -> Calls {
+    let [before, own, after] = chords;
     let [p, q] = [before.cross(own), own.cross(after)];
     let sines = [p.length(), q.length()];
     let mut calls = Calls::default();
-
-    let gamma = p.dot(after);
-    if gamma > zero {
-        calls = calls.and(Calls::RIGHT_TORSION);
-    } else if gamma < -zero {
-        calls = calls.and(Calls::LEFT_TORSION);
-    }
-
-    if sines[0] > zero && sines[1] > zero {
-        let (cosine, small) = (p.dot(q), zero * (sines[0] * sines[1]));
-        let flat = gamma.abs() <= zero && plane_is_known(p, q, sines, tolerances);
-        if cosine > small {
-            calls = calls.and(Calls::CONVEXITY).and(Calls::GLOBAL_CONVEXITY);
-            if flat {
-                calls = calls.and(Calls::COPLANARITY);
-            }
-        } else if cosine < -small {
-            calls = calls.and(Calls::INFLECTION);
-            if flat {
-                calls = calls.and(Calls::SPLIT_COPLANARITY);
-            }
+    if p.dot(after).abs() <= tolerances.zero && plane_is_known(p, q, sines, tolerances) {
+        if signs.any(Calls::CONVEXITY) {
+            calls = calls.and(Calls::COPLANARITY);
+        } else if signs.any(Calls::INFLECTION) {
+            calls = calls.and(Calls::SPLIT_COPLANARITY);
         }
     }
-
     for (side, call) in [Calls::LINE_AT_START, Calls::LINE_AT_END].into_iter().enumerate() {
-        if sines[side] <= zero && chords[side].dot(chords[side + 1]) > 0.0 {
+        if sines[side] <= tolerances.zero && chords[side].dot(chords[side + 1]) > 0.0 {
             // (5.39): with zero curvature the ends have no line of their own.
             let node = i + side;
             let free = polygon.boundary() == Boundary::ZeroCurvature
@@ -189,12 +301,16 @@ pub(crate) fn plane_is_known(p: DVec3, q: DVec3, sines: [f64; 2], tolerances: &T
 /// gives the true limit.
 #[must_use]
 pub fn separation(polygon: &DataPolygon, segment: usize) -> f64 {
-    separation_between(polygon, [segment; 2])
+    separation_between(polygon, [segment; 2], polygon.binormals(segment))
 }
 
 /// The same for the part of the curve from the start of one segment to the end of another, as if there
-/// were no points between.
-pub(crate) fn separation_between(polygon: &DataPolygon, [first, last]: [usize; 2]) -> f64 {
+/// were no points between; with the binormal vectors at the two nodes.
+pub(crate) fn separation_between(
+    polygon: &DataPolygon,
+    [first, last]: [usize; 2],
+    [p, q]: [DVec3; 2],
+) -> f64 {
     let n = polygon.segments();
     let neighbour = |segment: usize, before: bool| -> f64 {
         let end = if before { segment == 0 } else { segment + 1 == n };
@@ -211,8 +327,8 @@ pub(crate) fn separation_between(polygon: &DataPolygon, [first, last]: [usize; 2
     };
     let h_before = polygon.neighbour_spacings(first)[0];
     let h_after = polygon.neighbour_spacings(last)[1];
-    let p = polygon.binormal(first).length() * neighbour(first, true);
-    let q = polygon.binormal(last + 1).length() * neighbour(last, false);
+    let p = p.length() * neighbour(first, true);
+    let q = q.length() * neighbour(last, false);
     1.0 / (1.0 + (q / p).sqrt() * (h_before / h_after).powf(0.75))
 }
 

@@ -8,8 +8,7 @@ use shapespline_geometry::DataPolygon;
 
 use crate::{
     Calls, Criteria, Criterion, Faults, Record, ShapeReport, Tolerances,
-    calls::separation,
-    faults::{Cones, Situation, cone_faults, sign_faults},
+    faults::{Cones, Situation, faults},
     margin,
 };
 
@@ -30,19 +29,7 @@ impl<'a> Checker<'a> {
     #[must_use]
     pub fn new(polygon: &'a DataPolygon, criteria: Criteria, tolerances: Tolerances) -> Self {
         let planar = Calls::is_planar(polygon, &tolerances);
-        Self::of_part(polygon, planar, criteria, tolerances)
-    }
-
-    /// The same of a part of a polygon ([`DataPolygon::part`]), where it is known whether the whole
-    /// [is planar](Calls::is_planar).
-    #[must_use]
-    pub fn of_part(
-        polygon: &'a DataPolygon,
-        planar: bool,
-        criteria: Criteria,
-        tolerances: Tolerances,
-    ) -> Self {
-        let calls = Calls::of_part(polygon, &tolerances, planar, criteria);
+        let calls = Calls::among(polygon, &tolerances, planar, criteria);
         Self { polygon, criteria, tolerances, calls }
     }
 
@@ -72,12 +59,7 @@ impl<'a> Checker<'a> {
         if calls.is_empty() {
             return Faults::default();
         }
-        let s = self.situation(segment, legs);
-        let faults = sign_faults(&s, calls);
-        if calls.any(Calls::of(Criterion::Coplanarity).and(Calls::of(Criterion::Collinearity))) {
-            return faults.and(cone_faults(&s, calls, &self.cones(segment)));
-        }
-        faults
+        faults(&self.situation(segment, legs), calls, || self.cones(segment))
     }
 
     /// The segments that fail, ascending, with their faults. Cost O(N), on all threads for long
@@ -164,10 +146,7 @@ impl<'a> Checker<'a> {
     /// How many of the segments each criterion applies to, in the order of [`Criterion::ALL`].
     #[must_use]
     pub fn applicable(&self, segments: Range<usize>) -> [usize; 6] {
-        Criterion::ALL.map(|criterion| {
-            let (calls, of) = (&self.calls[segments.clone()], Calls::of(criterion));
-            calls.iter().filter(|calls| calls.any(of)).count()
-        })
+        Calls::count(&self.calls[segments])
     }
 
     #[inline]
@@ -177,24 +156,8 @@ impl<'a> Checker<'a> {
     }
 
     pub(crate) fn cones(&self, i: usize) -> Cones {
-        let calls = self.calls[i];
-        let parts = if calls.any(Calls::SPLIT_COPLANARITY) {
-            let flip = separation(self.polygon, i);
-            [0.5 * flip, 0.5 * (1.0 + flip)]
-        } else {
-            [0.0, 1.0]
-        };
-        // The line of three points is known from both of its chords.
-        let line = |node: usize| {
-            let [before, after] = self.polygon.directions_at(node);
-            (before + after).normalize_or_zero()
-        };
-        let normals = [i, i + 1].map(|node| self.polygon.binormal(node).normalize_or_zero());
-        Cones {
-            plane: (self.tolerances.coplanarity, normals),
-            parts,
-            line: (self.tolerances.collinearity, [line(i), line(i + 1)]),
-        }
+        let around = self.polygon.directions_around(i);
+        Cones::new(self.polygon, i, around, self.calls[i], &self.tolerances)
     }
 }
 

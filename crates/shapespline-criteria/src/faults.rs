@@ -1,10 +1,11 @@
 //! The verdict on one segment: which of the exact conditions fail.
 
 use glam::DVec3;
-use shapespline_geometry::bernstein::quadratic_is_positive;
+use shapespline_geometry::{DataPolygon, bernstein::quadratic_is_positive, near_one};
 
 use crate::{
-    Calls,
+    Calls, Criterion, Tolerances,
+    calls::separation_between,
     cone::{Quadratic, end_is_inside, inside, part},
     global::is_globally_convex,
 };
@@ -97,13 +98,14 @@ pub(crate) struct Situation {
 
 impl Situation {
     #[inline]
-    pub(crate) fn new([a, c]: [DVec3; 2], chord: DVec3, p: DVec3, q: DVec3) -> Self {
-        let size = chord.abs().max_element();
-        let (a, c, chord) = if (1e-40..1e40).contains(&size) {
-            (a, c, chord)
-        } else {
-            (a / size, c / size, chord / size)
-        };
+    pub(crate) fn new(legs: [DVec3; 2], chord: DVec3, p: DVec3, q: DVec3) -> Self {
+        let (legs, chord) = near_one(legs, chord);
+        Self::of_scaled(legs, chord, p, q)
+    }
+
+    /// The same of legs and chord [near one](near_one) in size.
+    #[inline(always)]
+    pub(crate) fn of_scaled([a, c]: [DVec3; 2], chord: DVec3, p: DVec3, q: DVec3) -> Self {
         // With b = L − a − c: a×b = a×L − a×c, b×c = L×c − a×c.
         let middle = a.cross(c);
         let omega = [a.cross(chord) - middle, middle, chord.cross(c) - middle];
@@ -111,13 +113,13 @@ impl Situation {
     }
 
     /// `ω·n` as `[α, γ, β]` of Lemma 5.1.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn omega_along(&self, n: DVec3) -> [f64; 3] {
         self.omega.map(|w| w.dot(n))
     }
 
     /// `det[a, b, c]`: with b = L − a − c it is `det[a, L, c]`.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn determinant(&self) -> f64 {
         self.a.cross(self.chord).dot(self.c)
     }
@@ -147,6 +149,30 @@ pub(crate) struct Cones {
 }
 
 impl Cones {
+    /// Those of a segment, given the unit chords of it and its neighbours.
+    pub(crate) fn new(
+        polygon: &DataPolygon,
+        segment: usize,
+        [before, own, after]: [DVec3; 3],
+        calls: Calls,
+        tolerances: &Tolerances,
+    ) -> Self {
+        let binormals = [before.cross(own), own.cross(after)];
+        let parts = if calls.any(Calls::SPLIT_COPLANARITY) {
+            let flip = separation_between(polygon, [segment; 2], binormals);
+            [0.5 * flip, 0.5 * (1.0 + flip)]
+        } else {
+            [0.0, 1.0]
+        };
+        // The line of three points is known from both of its chords.
+        let lines = [before + own, own + after].map(DVec3::normalize_or_zero);
+        Self {
+            plane: (tolerances.coplanarity, binormals.map(DVec3::normalize_or_zero)),
+            parts,
+            line: (tolerances.collinearity, lines),
+        }
+    }
+
     /// For questions that ask of no cone.
     pub(crate) fn none() -> Self {
         Self { plane: (1.0, [DVec3::ZERO; 2]), parts: [0.0, 1.0], line: (1.0, [DVec3::ZERO; 2]) }
@@ -155,6 +181,34 @@ impl Cones {
 
 /// Collinearity is asked on this part of a segment next to the node.
 pub(crate) const LINE_PART: f64 = 0.5;
+
+/// The calls that are not met beyond doubt: none, and the exact verdict is that there is no fault. A few
+/// signs without branches; where one of them says otherwise nothing is decided.
+#[inline(always)]
+pub(crate) fn doubtful(s: &Situation, calls: u16) -> u16 {
+    let ([a0, g0, b0], [a1, g1, b1]) = (s.omega_along(s.p), s.omega_along(s.q));
+    let determinant = s.determinant();
+    let met = |holds: bool, call: Calls| if holds { call.bits() } else { 0 };
+    // A middle coefficient that is not negative needs no root.
+    let start = (a0 > 0.0) & (b1 > 0.0);
+    let convex = start & (a1 > 0.0) & (b0 > 0.0) & (g0 >= 0.0) & (g1 >= 0.0);
+    let inflecting = start & (a1 < 0.0) & (b0 < 0.0);
+    let met = met(convex, Calls::CONVEXITY)
+        | met(inflecting, Calls::INFLECTION)
+        | met(determinant > 0.0, Calls::RIGHT_TORSION)
+        | met(determinant < 0.0, Calls::LEFT_TORSION);
+    calls & !met
+}
+
+/// The exact verdict on a segment; the cones are made where a call needs them.
+#[inline]
+pub(crate) fn faults(s: &Situation, calls: Calls, cones: impl FnOnce() -> Cones) -> Faults {
+    let faults = sign_faults(s, calls);
+    if calls.any(Calls::of(Criterion::Coplanarity).and(Calls::of(Criterion::Collinearity))) {
+        return faults.and(cone_faults(s, calls, &cones()));
+    }
+    faults
+}
 
 /// The faults of convexity, inflection and torsion.
 #[inline]

@@ -40,6 +40,7 @@ mod margin;
 mod notes;
 mod polygon_shape;
 mod report;
+mod stretch;
 
 pub use calls::{Calls, separation};
 pub use checker::{Checker, check};
@@ -53,6 +54,7 @@ pub use inflections::{
 pub use notes::{NodeCondition, NodeRecord, Notes, Oscillation};
 pub use polygon_shape::{Extent, PolygonShape, polygon_shape};
 pub use report::{Count, Record, ShapeReport, Undecided};
+pub use stretch::{StretchCalls, StretchChecker};
 
 /// The examples of the README are run as tests.
 #[cfg(doctest)]

@@ -146,9 +146,8 @@ const ROOM: f64 = 16.0;
 
 /// Checks that coordinates are numbers that leave room for sums of them. O(n), without a branch an entry.
 pub(crate) fn check_room(argument: &'static str, points: &[DVec3]) -> Result<(), InputError> {
-    // Zero times a number is zero, times an infinity or NaN it is NaN.
-    let zero = points.iter().fold(DVec3::ZERO, |sum, p| sum + *p * ROOM * 0.0);
-    if zero == DVec3::ZERO {
+    let outside = |x: f64| u64::from(!(x.abs() <= f64::MAX / ROOM));
+    if points.iter().map(|p| outside(p.x) + outside(p.y) + outside(p.z)).sum::<u64>() == 0 {
         return Ok(());
     }
     let entries = points.iter().enumerate().flat_map(|(i, p)| p.to_array().map(|x| (i, x)));

@@ -32,6 +32,7 @@ pub mod polynomial;
 mod ragged;
 mod reparametrized;
 mod segment;
+mod stretch;
 mod vector;
 
 pub use arc_length::ArcLength;
@@ -49,7 +50,8 @@ pub use polygon::{DataPolygon, Dimension};
 pub use ragged::Ragged;
 pub use reparametrized::ReparametrizedCubic;
 pub use segment::CubicSegment;
-pub use vector::{length, normalize};
+pub use stretch::{Lanes, Stretch};
+pub use vector::{length, near_one, normalize};
 
 /// The examples of the README are run as tests.
 #[cfg(doctest)]

@@ -3,7 +3,10 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use crate::{InputError, vector::length};
+use crate::{
+    InputError,
+    vector::{is_ordinary, length},
+};
 
 /// Choice of the parameters `u_0 < … < u_N` of the points.
 #[derive(Debug, Clone, PartialEq)]
@@ -79,22 +82,36 @@ pub(crate) fn check_increasing(argument: &'static str, u: &[f64]) -> Result<(), 
 /// The least spacing: evaluation multiplies by its reciprocal, which must be finite.
 const LEAST: f64 = 5.6e-309;
 
-/// Points from which on their distances are taken on all threads.
+/// Chords from which on their lengths are taken on all threads, in blocks.
 const MANY: usize = 32_768;
+const BLOCK: usize = MANY / 4;
 
 fn accumulate(
     points: &[DVec3],
     spacing: impl Fn(f64) -> f64 + Sync,
 ) -> Result<Vec<f64>, InputError> {
-    let step = |i: usize| match i {
-        0 => 0.0,
-        _ => spacing(length(points[i] - points[i - 1])),
+    let steps = |points: &[DVec3], steps: &mut [f64]| {
+        let mut far = 0;
+        for (p, step) in points.windows(2).zip(&mut *steps) {
+            let chord = p[1] - p[0];
+            *step = spacing(chord.length());
+            far += u64::from(!is_ordinary(chord));
+        }
+        if far > 0 {
+            for (p, step) in points.windows(2).zip(steps) {
+                *step = spacing(length(p[1] - p[0]));
+            }
+        }
     };
-    let mut u: Vec<f64> = if points.len() < MANY {
-        (0..points.len()).map(step).collect()
+    let mut u = vec![0.0; points.len()];
+    let Some((_, rest)) = u.split_first_mut() else { return Ok(u) };
+    if rest.len() < MANY {
+        steps(points, rest);
     } else {
-        (0..points.len()).into_par_iter().with_min_len(MANY / 4).map(step).collect()
-    };
+        let block =
+            |(k, u): (usize, &mut [f64])| steps(&points[k * BLOCK..=k * BLOCK + u.len()], u);
+        rest.par_chunks_mut(BLOCK).enumerate().for_each(block);
+    }
     let mut sum = 0.0;
     for i in 1..u.len() {
         let next = sum + u[i];

@@ -148,7 +148,8 @@ impl<'a, 'c, 'p> Pair<'a, 'c, 'p> {
         let polygon = self.around.checker.polygon();
         let segments = self.segments();
         let [h0, h1] = segments.map(|i| polygon.spacing(i));
-        let flip = separation_between(polygon, segments);
+        let binormals = [segments[0], segments[1] + 1].map(|node| polygon.binormal(node));
+        let flip = separation_between(polygon, segments, binormals);
         // From the parameter to the local one, which runs at another rate on each segment.
         let local = |s: f64| {
             let u = s * (h0 + h1);

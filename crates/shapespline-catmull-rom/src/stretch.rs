@@ -1,0 +1,308 @@
+//! The largest handles of one stretch of a polygon after another, with their check.
+//!
+//! The loops work on several segments at once (see [`Stretch`]); what is rare, lines and ends, comes
+//! after them.
+
+use std::ops::Range;
+
+use shapespline_criteria::{Calls, Faults, StretchCalls, StretchChecker};
+use shapespline_geometry::{DVec3, DataPolygon, Lanes, Stretch, near_one};
+
+use crate::{
+    Continuity, HandleOptions,
+    bounds::{SIGNS, has_lines, of_lines, of_signs},
+    handles::freed,
+    tangents::{tangent, tangent_between},
+};
+
+/// One number a place.
+type Row = [f64; Stretch::ROOM];
+
+/// The handles of a stretch, with room to work in.
+#[derive(Debug, Clone)]
+pub(crate) struct StretchHandles {
+    stretch: Stretch,
+    calls: StretchCalls,
+    tangents: Lanes,
+    /// The legs of each segment.
+    first: Lanes,
+    last: Lanes,
+    /// The factors that each segment allows at its ends; then those its legs have.
+    at_start: Row,
+    at_end: Row,
+}
+
+impl Default for StretchHandles {
+    fn default() -> Self {
+        Self {
+            stretch: Stretch::default(),
+            calls: [Calls::default(); Stretch::ROOM],
+            tangents: Lanes::default(),
+            first: Lanes::default(),
+            last: Lanes::default(),
+            at_start: [1.0; Stretch::ROOM],
+            at_end: [1.0; Stretch::ROOM],
+        }
+    }
+}
+
+/// What a check of handles found.
+#[derive(Debug, Default)]
+pub(crate) struct Found {
+    /// The segments that fail, ascending.
+    pub(crate) faults: Vec<(usize, Faults)>,
+    /// How many segments each criterion applies to.
+    pub(crate) applicable: [usize; 6],
+}
+
+impl Found {
+    /// This and what was found on the segments after it.
+    pub(crate) fn and(mut self, after: Self) -> Self {
+        self.faults.extend(after.faults);
+        self.count(after.applicable);
+        self
+    }
+
+    fn count(&mut self, applicable: [usize; 6]) {
+        for (sum, count) in self.applicable.iter_mut().zip(applicable) {
+            *sum += count;
+        }
+    }
+}
+
+impl StretchHandles {
+    /// The handles of some segments, at most [`Stretch::OWN`], into `legs`; the smaller factor at the
+    /// first node of each into `factors`. Returns that at the last node.
+    pub(crate) fn make(
+        &mut self,
+        polygon: &DataPolygon,
+        checker: &StretchChecker<'_>,
+        options: &HandleOptions,
+        own: Range<usize>,
+        (legs, factors): (&mut [[DVec3; 2]], &mut [f64]),
+        found: &mut Found,
+    ) -> f64 {
+        self.stretch.load(polygon, own);
+        checker.calls(&self.stretch, &mut self.calls);
+        self.take_full_legs(polygon);
+        self.limit(polygon, options);
+        self.join(options.continuity);
+        self.shorten(polygon);
+
+        let all = [&self.first, &self.last];
+        checker.faults(&self.stretch, &self.calls, all, &mut found.faults);
+        found.count(StretchChecker::applicable(&self.stretch, &self.calls));
+        for (j, (legs, factor)) in self.stretch.own().zip(legs.iter_mut().zip(factors)) {
+            *legs = [self.first.get(j), self.last.get(j)];
+            *factor = self.factor(j - 1);
+        }
+        self.factor(self.stretch.own().end - 1)
+    }
+
+    /// The smaller factor at the node at the end of a place.
+    #[inline(always)]
+    fn factor(&self, j: usize) -> f64 {
+        smaller(self.at_end[j], self.at_start[j + 1])
+    }
+
+    /// The full legs: a third of the spacing along the tangents at the nodes. A leg at an end of zero
+    /// curvature is zero here.
+    fn take_full_legs(&mut self, polygon: &DataPolygon) {
+        let Self { stretch, tangents, first, last, .. } = self;
+        let (chords, spacings) = (stretch.chords(), stretch.spacings());
+        for j in 0..stretch.less(1) {
+            let around = [chords.get(j), chords.get(j + 1)];
+            tangents.set(j, tangent_between(around, [spacings[j], spacings[j + 1]]));
+        }
+        for (end, node) in ends(stretch, polygon).into_iter().zip([0, polygon.segments()]) {
+            if let Some(j) = end {
+                tangents.set(j, tangent(polygon, node).unwrap_or_default());
+            }
+        }
+        for j in 0..stretch.less(2) {
+            let third = spacings[j + 1] / 3.0;
+            first.set(j + 1, tangents.get(j) * third);
+            last.set(j + 1, tangents.get(j + 1) * third);
+        }
+    }
+
+    /// The largest factors, up to one, that stay below `safety` times the bounds which the calls of the
+    /// polygon put on them.
+    fn limit(&mut self, polygon: &DataPolygon, options: &HandleOptions) {
+        let Self { stretch, calls, first, last, at_start, at_end, .. } = self;
+        let (chords, binormals) = (stretch.chords(), stretch.binormals());
+        let legs = |j: usize| [first.get(j), last.get(j)];
+        let nodes = |j: usize| [binormals.get(j - 1), binormals.get(j)];
+        let safety = options.safety;
+        if stretch.is_ordinary() {
+            for j in 0..stretch.less(2) {
+                let j = j + 1;
+                let bounds = of_signs(legs(j), chords.get(j), nodes(j));
+                [at_start[j], at_end[j]] = limits(calls[j], bounds, safety);
+            }
+        } else {
+            for j in 1..=stretch.less(2) {
+                let (legs, chord) = near_one(legs(j), chords.get(j));
+                let bounds = of_signs(legs, chord, nodes(j));
+                [at_start[j], at_end[j]] = limits(calls[j], bounds, safety);
+            }
+        }
+        let sine = options.tolerances.collinearity;
+        let cotangent = ((1.0 - sine) * (1.0 + sine)).sqrt() / sine;
+        for j in (1..=stretch.less(2)).filter(|&j| has_lines(calls[j])) {
+            let direction = stretch.directions().get(j);
+            let [p, q] = of_lines(calls[j], legs(j), chords.get(j), direction, cotangent);
+            at_start[j] = at_start[j].min(safety * p);
+            at_end[j] = at_end[j].min(safety * q);
+        }
+        // At an open end there is one segment, and what it allows.
+        let [start, end] = ends(stretch, polygon);
+        if let Some(j) = start {
+            at_end[j] = at_start[j + 1];
+        }
+        if let Some(j) = end {
+            at_start[j + 1] = at_end[j];
+        }
+    }
+
+    /// From the factors that segments allow to those their legs have: the smaller one at a node, for
+    /// both where they have to be one.
+    fn join(&mut self, continuity: Continuity) {
+        let Self { stretch, calls, at_start, at_end, .. } = self;
+        for j in 0..stretch.less(3) {
+            let j = j + 1;
+            let (q, p) = (at_end[j], at_start[j + 1]);
+            // In an inflecting coplanar segment the legs decide where it inflects: one factor a node.
+            let one = continuity == Continuity::C1
+                || calls[j].and(calls[j + 1]).any(Calls::SPLIT_COPLANARITY);
+            let least = smaller(q, p);
+            (at_end[j], at_start[j + 1]) = if one { (least, least) } else { (q, p) };
+        }
+    }
+
+    /// Legs times their factors, and those at ends of zero curvature, for which `a = (L − c)/2`, or any
+    /// part of it, makes `a × b` vanish.
+    fn shorten(&mut self, polygon: &DataPolygon) {
+        let Self { stretch, first, last, at_start, at_end, .. } = self;
+        for j in 0..stretch.less(2 * Stretch::BESIDE) {
+            let j = j + Stretch::BESIDE;
+            first.set(j, first.get(j) * at_start[j]);
+            last.set(j, last.get(j) * at_end[j]);
+        }
+        // The ends of closed polygons are none.
+        if polygon.tangents().is_some() {
+            return;
+        }
+        let [start, end] = ends(stretch, polygon);
+        let free = [start.map(|j| j + 1), end];
+        for j in free.into_iter().flatten().filter(|j| stretch.own().contains(j)) {
+            let scale = |end: Option<usize>, factor: f64| (end == Some(j)).then_some(factor);
+            let scales = [scale(free[0], at_start[j]), scale(free[1], at_end[j])];
+            let [a, c] = freed(stretch.chords().get(j), [first.get(j), last.get(j)], scales);
+            first.set(j, a);
+            last.set(j, c);
+        }
+    }
+}
+
+/// The smaller of two numbers that are not NaN: one instruction.
+#[inline(always)]
+fn smaller(a: f64, b: f64) -> f64 {
+    if b < a { b } else { a }
+}
+
+/// The factors that bounds by signs allow, where the calls ask for signs.
+#[inline(always)]
+fn limits(calls: Calls, bounds: [f64; 2], safety: f64) -> [f64; 2] {
+    let limit = |bound: f64| {
+        let limit = safety * bound;
+        if calls.any(SIGNS) & (limit < 1.0) { limit } else { 1.0 }
+    };
+    [limit(bounds[0]), limit(bounds[1])]
+}
+
+/// The places at the end of which the first and the last node of an open polygon lie.
+fn ends(stretch: &Stretch, polygon: &DataPolygon) -> [Option<usize>; 2] {
+    let segments = stretch.segments(polygon);
+    let last = segments.end - 1;
+    let inner = !polygon.is_closed() && last + 1 < stretch.places();
+    [segments.start.checked_sub(1), inner.then_some(last)]
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use shapespline_criteria::Checker;
+    use shapespline_geometry::{Boundary, Parametrization};
+
+    use super::*;
+
+    /// Everything that is made of a polygon in stretches of some width.
+    fn in_stretches(
+        polygon: &DataPolygon,
+        options: &HandleOptions,
+        width: usize,
+    ) -> (Vec<[DVec3; 2]>, Vec<f64>, Found) {
+        let n = polygon.segments();
+        let checker = StretchChecker::new(polygon, options.criteria, options.tolerances);
+        let mut handles = StretchHandles::default();
+        let (mut legs, mut factors) = (vec![[DVec3::ZERO; 2]; n], vec![0.0; n]);
+        let (mut found, mut last) = (Found::default(), 0.0);
+        for (k, out) in legs.chunks_mut(width).zip(factors.chunks_mut(width)).enumerate() {
+            let own = k * width..k * width + out.0.len();
+            last = handles.make(polygon, &checker, options, own, out, &mut found);
+        }
+        factors.push(last);
+        (legs, factors, found)
+    }
+
+    /// To the same bits wherever stretches begin and end, where planes, lines and turns lie across the
+    /// seams and sizes are any; the verdicts are those of the checker that sees one segment at a time.
+    #[test]
+    fn stretches_agree_with_each_other_and_with_the_checker() {
+        let at = |k: usize| {
+            let t = 0.37 * k as f64;
+            let lift = if (k / 70).is_multiple_of(3) { 0.0 } else { (1.3 * t).cos() };
+            let bend = if k / 30 % 4 == 1 { 0.0 } else { (0.4 * t).sin() };
+            DVec3::new(t, bend, lift)
+        };
+        let tangents = Boundary::Tangents { start: DVec3::X, end: DVec3::Y };
+        let ends = [Boundary::ZeroCurvature, Boundary::Circular, tangents, Boundary::Periodic];
+        let mut shortened = [false; 4];
+        for (n, planar, size) in [2, 3, 64, 65, 400]
+            .into_iter()
+            .flat_map(|n| [false, true].map(|planar| (n, planar)))
+            .flat_map(|(n, planar)| [1e-200, 1e-38, 1.0, 1e39].map(|size| (n, planar, size)))
+        {
+            let flat = if planar { DVec3::new(1.0, 1.0, 0.0) } else { DVec3::ONE };
+            for (k, boundary) in ends.into_iter().enumerate() {
+                let mut points: Vec<DVec3> = (0..=n).map(|k| at(k) * flat * size).collect();
+                if boundary == Boundary::Periodic {
+                    points[n] = points[0];
+                }
+                let polygon =
+                    DataPolygon::new(points, &Parametrization::Centripetal, boundary).unwrap();
+                for continuity in [Continuity::C1, Continuity::G1] {
+                    let options = HandleOptions { continuity, ..HandleOptions::default() };
+                    let (legs, factors, found) = in_stretches(&polygon, &options, Stretch::OWN);
+                    for width in [1, 7] {
+                        let other = in_stretches(&polygon, &options, width);
+                        assert_eq!(legs, other.0);
+                        assert_eq!(factors, other.1);
+                        assert_eq!(found.faults, other.2.faults);
+                        assert_eq!(found.applicable, other.2.applicable);
+                    }
+                    let checker = Checker::new(&polygon, options.criteria, options.tolerances);
+                    assert_eq!(found.faults, checker.all_faults(|i| legs[i]));
+                    assert_eq!(found.applicable, checker.applicable(0..n));
+                    if n == 400 {
+                        shortened[k] |= factors.iter().any(|&f| f < 1.0);
+                        // Coplanarity is asked for in space only.
+                        assert_eq!(found.applicable[3] > 0, !planar);
+                    }
+                }
+            }
+        }
+        assert_eq!(shortened, [true; 4]);
+    }
+}

@@ -1,0 +1,142 @@
+//! The checker of one stretch of a polygon after another, for methods that are local.
+
+use shapespline_geometry::{DataPolygon, Lanes, Stretch};
+
+use crate::{
+    Calls, Criteria, Faults, Tolerances,
+    faults::{Cones, Situation, doubtful, faults},
+};
+
+/// The shape criteria of a polygon, asked stretch by stretch: to the bit what a
+/// [`Checker`](crate::Checker) finds, with nothing kept in memory that grows with the polygon.
+#[derive(Debug, Clone, Copy)]
+pub struct StretchChecker<'a> {
+    polygon: &'a DataPolygon,
+    tolerances: Tolerances,
+    wanted: Calls,
+}
+
+/// What the segments of a stretch call for, by place.
+pub type StretchCalls = [Calls; Stretch::ROOM];
+
+impl<'a> StretchChecker<'a> {
+    /// Some criteria, asked of a polygon. Cost O(N) at most, to find out whether it is planar.
+    #[must_use]
+    pub fn new(polygon: &'a DataPolygon, criteria: Criteria, tolerances: Tolerances) -> Self {
+        let planar = Calls::is_planar(polygon, &tolerances);
+        Self { polygon, tolerances, wanted: Calls::wanted(criteria, planar) }
+    }
+
+    /// What the segments of a stretch call for, except at its first and its last place.
+    pub fn calls(&self, stretch: &Stretch, calls: &mut StretchCalls) {
+        Calls::of_stretch(self.polygon, stretch, self.wanted, &self.tolerances, calls);
+    }
+
+    /// How many of a stretch's own segments each criterion applies to.
+    #[must_use]
+    pub fn applicable(stretch: &Stretch, calls: &StretchCalls) -> [usize; 6] {
+        Calls::count(&calls[stretch.own()])
+    }
+
+    /// Adds those of a stretch's own segments that fail with the end legs `first, last`.
+    pub fn faults(
+        &self,
+        stretch: &Stretch,
+        calls: &StretchCalls,
+        [first, last]: [&Lanes; 2],
+        found: &mut Vec<(usize, Faults)>,
+    ) {
+        let (chords, binormals) = (stretch.chords(), stretch.binormals());
+        // Where sizes are not ordinary every segment is decided by itself.
+        let mut doubts = [1; Stretch::ROOM];
+        let mut any = 1;
+        if stretch.is_ordinary() {
+            any = 0;
+            for j in 0..stretch.less(2 * Stretch::BESIDE) {
+                let legs = [first.get(j + 2), last.get(j + 2)];
+                let [p, q] = [binormals.get(j + 1), binormals.get(j + 2)];
+                let s = Situation::of_scaled(legs, chords.get(j + 2), p, q);
+                doubts[j + 2] = doubtful(&s, calls[j + 2].bits());
+                any |= doubts[j + 2];
+            }
+        }
+        if any == 0 {
+            return;
+        }
+        for j in stretch.own().filter(|&j| doubts[j] != 0) {
+            let around = [j - 1, j, j + 1].map(|j| stretch.directions().get(j));
+            let legs = [first.get(j), last.get(j)];
+            let s = Situation::new(legs, chords.get(j), binormals.get(j - 1), binormals.get(j));
+            let i = stretch.segment(self.polygon, j);
+            let cones = || Cones::new(self.polygon, i, around, calls[j], &self.tolerances);
+            let faults = faults(&s, calls[j], cones);
+            if !faults.is_empty() {
+                found.push((i, faults));
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use shapespline_geometry::{Boundary, DVec3, Parametrization};
+
+    use super::*;
+    use crate::{Checker, Criterion};
+
+    /// Verdicts are those of the checker that sees one segment at a time, also on handles that fail.
+    #[test]
+    fn a_stretch_is_judged_as_its_segments_are() {
+        let n = Stretch::OWN;
+        let mut failed = Faults::default();
+        for (twist, size) in [0.0, 0.3, 1.3]
+            .into_iter()
+            .flat_map(|twist| [1e-200, 1.0, 1e39].map(|size| (twist, size)))
+        {
+            let at = |k: usize| {
+                let t = k as f64;
+                let bend = if k / 9 % 4 == 1 { 0.0 } else { (0.7 * t).sin() };
+                DVec3::new(t, bend, (twist * t).sin()) * size
+            };
+            let points = (0..=n).map(at).collect();
+            let boundary = Boundary::ZeroCurvature;
+            let polygon = DataPolygon::new(points, &Parametrization::Uniform, boundary).unwrap();
+            let (criteria, tolerances) = (Criteria::EVERY, Tolerances::default());
+            let checker = Checker::new(&polygon, criteria, tolerances);
+            let local = StretchChecker::new(&polygon, criteria, tolerances);
+            let (mut stretch, mut calls) = (Stretch::default(), [Calls::default(); Stretch::ROOM]);
+            stretch.load(&polygon, 0..n);
+            local.calls(&stretch, &mut calls);
+            assert_eq!(&calls[stretch.own()], checker.calls());
+            // One criterion alone is asked for where it is among all of them.
+            for criterion in Criterion::ALL {
+                let one = Criteria::NONE.with(criterion);
+                let alone = Checker::new(&polygon, one, tolerances);
+                let among = checker.calls().iter().map(|calls| calls.only(one));
+                assert!(alone.calls().iter().copied().eq(among));
+            }
+            for scale in [0.1, 0.4, 1.0, 3.0] {
+                // Tilted, or torsion would never fail.
+                let slope = |node: usize| {
+                    let [before, after] = polygon.directions_at(node);
+                    (before + after + DVec3::Z * (0.3 * twist)) * (0.4 * scale * size)
+                };
+                let legs = |i: usize| [slope(i), slope(i + 1)];
+                let (mut first, mut last) = (Lanes::default(), Lanes::default());
+                for (i, j) in stretch.own().enumerate() {
+                    let [a, c] = legs(i);
+                    first.set(j, a);
+                    last.set(j, c);
+                }
+                let mut faults = Vec::new();
+                local.faults(&stretch, &calls, [&first, &last], &mut faults);
+                assert_eq!(faults, checker.all_faults(legs));
+                failed = faults.iter().fold(failed, |all, &(_, faults)| all.and(faults));
+            }
+        }
+        for criterion in Criterion::ALL {
+            assert!(failed.any(Faults::of(criterion)), "{criterion}");
+        }
+    }
+}

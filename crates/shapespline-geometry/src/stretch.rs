@@ -1,0 +1,277 @@
+//! A stretch of a polygon, coordinate by coordinate, for arithmetic on several segments at once.
+//!
+//! A formula in a loop over [`Lanes`] is compiled for as many segments at a time as the machine's
+//! registers hold, if it has no branches; each operation is the one that a lone segment would get, so
+//! the results are the same to the bit. What needs branches is left to a second loop over the few
+//! places where it matters.
+
+use std::ops::Range;
+
+use glam::DVec3;
+
+use crate::{
+    DataPolygon,
+    vector::{is_ordinary, normalize},
+};
+
+/// Vectors coordinate by coordinate, for one stretch.
+#[derive(Debug, Clone)]
+pub struct Lanes {
+    x: [f64; Stretch::ROOM],
+    y: [f64; Stretch::ROOM],
+    z: [f64; Stretch::ROOM],
+}
+
+impl Default for Lanes {
+    fn default() -> Self {
+        let zero = [0.0; Stretch::ROOM];
+        Self { x: zero, y: zero, z: zero }
+    }
+}
+
+impl Lanes {
+    /// Vector `j`.
+    #[inline(always)]
+    #[must_use]
+    pub fn get(&self, j: usize) -> DVec3 {
+        DVec3::new(self.x[j], self.y[j], self.z[j])
+    }
+
+    /// Puts a vector at place `j`.
+    #[inline(always)]
+    pub fn set(&mut self, j: usize, v: DVec3) {
+        (self.x[j], self.y[j], self.z[j]) = (v.x, v.y, v.z);
+    }
+}
+
+/// Consecutive segments of a polygon and two on either side: what local methods look at.
+///
+/// Place `j` stands for segment `start − 2 + j` of the polygon, and for the node at its end. On closed
+/// polygons indices wrap. The places beyond the ends of an open one hold copies of the end segment, but
+/// the direction next to it is the stand-in that [`DataPolygon::directions_around`] has there.
+#[derive(Debug, Clone)]
+pub struct Stretch {
+    start: usize,
+    places: usize,
+    ordinary: bool,
+    chords: Lanes,
+    spacings: [f64; Self::ROOM],
+    directions: Lanes,
+    binormals: Lanes,
+}
+
+impl Default for Stretch {
+    fn default() -> Self {
+        Self {
+            start: 0,
+            places: 0,
+            ordinary: true,
+            chords: Lanes::default(),
+            spacings: [0.0; Self::ROOM],
+            directions: Lanes::default(),
+            binormals: Lanes::default(),
+        }
+    }
+}
+
+impl Stretch {
+    /// Segments that a stretch has on either side of its own.
+    pub const BESIDE: usize = 2;
+
+    /// The most segments of its own that a stretch has: all that is worked on stays in the first cache.
+    pub const OWN: usize = 64;
+
+    /// Room for them all.
+    pub const ROOM: usize = Self::OWN + 2 * Self::BESIDE;
+
+    /// Fills the stretch from some segments of a polygon, at least one and at most [`Stretch::OWN`].
+    pub fn load(&mut self, polygon: &DataPolygon, own: Range<usize>) {
+        self.start = own.start;
+        self.places = own.len() + 2 * Self::BESIDE;
+        self.load_chords(polygon);
+        self.find_directions(polygon);
+        for j in 0..self.less(1) {
+            self.binormals.set(j, self.directions.get(j).cross(self.directions.get(j + 1)));
+        }
+    }
+
+    fn load_chords(&mut self, polygon: &DataPolygon) {
+        let (places, n) = (self.places(), polygon.segments());
+        let own = self.start..self.start + places - 2 * Self::BESIDE;
+        let inside = own.start.saturating_sub(Self::BESIDE)..(own.end + Self::BESIDE).min(n);
+        let skip = inside.start + Self::BESIDE - own.start;
+        let nodes = inside.start..=inside.end;
+        let points = polygon.points()[nodes.clone()].windows(2);
+        let parameters = polygon.parameters()[nodes].windows(2);
+        for (j, (p, u)) in (skip..self.less(0)).zip(points.zip(parameters)) {
+            self.chords.set(j, p[1] - p[0]);
+            self.spacings[j] = u[1] - u[0];
+        }
+        for j in (0..skip).chain(skip + inside.len()..places) {
+            // Around a closed polygon; beyond an open end the last segment once more.
+            let i = if polygon.is_closed() {
+                (own.start + j + Self::BESIDE * (n - 1)) % n
+            } else {
+                (own.start + j).saturating_sub(Self::BESIDE).min(n - 1)
+            };
+            self.chords.set(j, polygon.chord(i));
+            self.spacings[j] = polygon.spacing(i);
+        }
+    }
+
+    fn find_directions(&mut self, polygon: &DataPolygon) {
+        let mut far = 0;
+        for j in 0..self.less(0) {
+            let chord = self.chords.get(j);
+            self.directions.set(j, chord / chord.length());
+            far += u64::from(!is_ordinary(chord));
+        }
+        self.ordinary = far == 0;
+        if !self.ordinary {
+            for j in 0..self.places() {
+                self.directions.set(j, normalize(self.chords.get(j)));
+            }
+        }
+        if let Some(tangents) = polygon.tangents() {
+            let inner = self.segments(polygon);
+            for (place, tangent) in
+                [inner.start.checked_sub(1), Some(inner.end)].iter().zip(tangents)
+            {
+                // Past the last place: not an end of the polygon.
+                if let Some(j) = place.filter(|&j| j < self.places()) {
+                    self.directions.set(j, normalize(tangent));
+                }
+            }
+        }
+    }
+
+    /// The number of places.
+    #[must_use]
+    pub fn places(&self) -> usize {
+        self.places
+    }
+
+    /// The number of places less a constant. Places `j, …, j + fewer` for `j` below it are in bounds,
+    /// and the compiler sees it: a check of bounds in a loop would keep it from working on several at
+    /// once.
+    #[inline(always)]
+    #[must_use]
+    pub fn less(&self, fewer: usize) -> usize {
+        self.places.saturating_sub(fewer).min(Self::ROOM - fewer)
+    }
+
+    /// The places of its own segments.
+    #[inline(always)]
+    #[must_use]
+    pub fn own(&self) -> Range<usize> {
+        Self::BESIDE..self.places() - Self::BESIDE
+    }
+
+    /// The places that stand for segments of the polygon: not those beyond its ends.
+    #[must_use]
+    pub fn segments(&self, polygon: &DataPolygon) -> Range<usize> {
+        if polygon.is_closed() {
+            return 0..self.places();
+        }
+        let last = polygon.segments() - self.start + Self::BESIDE;
+        Self::BESIDE.saturating_sub(self.start)..last.min(self.places())
+    }
+
+    /// The segment that a place stands for.
+    #[inline]
+    #[must_use]
+    pub fn segment(&self, polygon: &DataPolygon, place: usize) -> usize {
+        let n = polygon.segments();
+        (self.start + place + Self::BESIDE * (n - 1)) % n
+    }
+
+    /// Whether all chords are of a size at which [`near_one`](crate::near_one) leaves them as they are.
+    #[must_use]
+    pub fn is_ordinary(&self) -> bool {
+        self.ordinary
+    }
+
+    /// The chords.
+    #[inline(always)]
+    #[must_use]
+    pub fn chords(&self) -> &Lanes {
+        &self.chords
+    }
+
+    /// The spacings of the parameters.
+    #[inline(always)]
+    #[must_use]
+    pub fn spacings(&self) -> &[f64; Self::ROOM] {
+        &self.spacings
+    }
+
+    /// The unit chords, stand-ins included.
+    #[inline(always)]
+    #[must_use]
+    pub fn directions(&self) -> &Lanes {
+        &self.directions
+    }
+
+    /// The binormal vectors of the unit chords, at the node at the end of each place but the last.
+    #[inline(always)]
+    #[must_use]
+    pub fn binormals(&self) -> &Lanes {
+        &self.binormals
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use crate::{Boundary, Parametrization};
+
+    /// To the bit what the polygon says, at every size, around closed ones and at open ends.
+    #[test]
+    fn a_stretch_is_what_the_polygon_says() {
+        let mut stretch = Stretch::default();
+        for n in [2, 3, 63, 64, 65, 130] {
+            for exponent in [-250, -38, 0, 38, 250] {
+                let size = 10f64.powi(exponent);
+                let at = |k: usize| {
+                    let t = k as f64;
+                    DVec3::new((0.4 * t).cos(), (1.1 * t).sin(), 0.3 * t) * size
+                };
+                let open: Vec<DVec3> = (0..=n).map(at).collect();
+                let mut closed = open.clone();
+                closed[n] = closed[0];
+                let tangents = Boundary::Tangents { start: DVec3::X, end: DVec3::Y * 1e-200 };
+                let boundaries = [Boundary::ZeroCurvature, Boundary::Circular, tangents];
+                let polygons = boundaries.map(|boundary| (&open, boundary));
+                for (points, boundary) in
+                    [(&closed, Boundary::Periodic)].into_iter().chain(polygons)
+                {
+                    let points = points.clone();
+                    let polygon =
+                        DataPolygon::new(points, &Parametrization::Centripetal, boundary).unwrap();
+                    for start in (0..n).step_by(Stretch::OWN) {
+                        let own = start..n.min(start + Stretch::OWN);
+                        stretch.load(&polygon, own.clone());
+                        assert_eq!(stretch.own().len(), own.len());
+                        for (j, i) in stretch.own().zip(own) {
+                            assert_eq!(stretch.segment(&polygon, j), i);
+                            assert!(stretch.segments(&polygon).contains(&j));
+                            assert_eq!(stretch.chords().get(j), polygon.chord(i));
+                            assert_eq!(stretch.spacings()[j], polygon.spacing(i));
+                            let around = [j - 1, j, j + 1].map(|j| stretch.directions().get(j));
+                            assert_eq!(around, polygon.directions_around(i));
+                            let binormals = [j - 1, j].map(|j| stretch.binormals().get(j));
+                            assert_eq!(binormals, polygon.binormals(i));
+                        }
+                        for j in stretch.segments(&polygon) {
+                            let i = stretch.segment(&polygon, j);
+                            assert_eq!(stretch.chords().get(j), polygon.chord(i));
+                            assert_eq!(stretch.directions().get(j), polygon.direction(i));
+                            assert_eq!(stretch.spacings()[j], polygon.spacing(i));
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
