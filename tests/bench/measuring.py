@@ -10,7 +10,7 @@ import numpy as np
 
 @dataclass(frozen=True)
 class Line:
-    """One line of the table; ``better`` says which way the ratio must go."""
+    """One line of the table."""
 
     what: str
     ours: str
@@ -27,7 +27,9 @@ class Line:
     def markdown(self) -> str:
         """Return the line as a row of a table in Markdown."""
         ratio = "" if self.ratio is None else f"{self.ratio:.2f}"
-        cells = (self.what, self.ours, self.theirs, ratio, self.target, "yes" if self.met else "no")
+        # A number and its unit stay on one line.
+        numbers = (cell.replace(" ", "\N{NO-BREAK SPACE}") for cell in (self.ours, self.theirs))
+        cells = (self.what, *numbers, ratio, self.target, "yes" if self.met else "no")
         return "| " + " | ".join(cells) + " |"
 
 

@@ -86,8 +86,12 @@ impl MonotoneSpline {
     /// # Errors
     /// As [`Self::inverse_many`].
     pub fn inverse_into(&self, queries: &[f64], out: &mut [f64]) -> Result<(), MonotoneError> {
-        let n = queries.len().min(out.len());
-        out[..n].copy_from_slice(&self.inverse_many(&queries[..n])?);
+        let inverse = self.inverted()?;
+        let search = self.inverse_searcher(inverse, queries.len().min(out.len()) > TILE);
+        tiles::fill(queries, out, TILES, |q, out| {
+            let found = self.inverse_tile(search, inverse.falling, q);
+            out.copy_from_slice(&found[..q.len()]);
+        });
         Ok(())
     }
 
