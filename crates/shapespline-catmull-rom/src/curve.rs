@@ -2,8 +2,9 @@
 
 use std::ops::ControlFlow;
 
+use rayon::prelude::*;
 use shapespline_criteria::{Checker, Criteria, ShapeReport, Tolerances};
-use shapespline_geometry::{Boundary, DataPolygon, InputError, PiecewiseCubic};
+use shapespline_geometry::{Boundary, DVec3, DataPolygon, InputError, PiecewiseCubic};
 use shapespline_search::{
     Fit, FitError, Interpolant, Outcome, SearchOptions, Step, Tension, per_point, search_and_report,
 };
@@ -110,7 +111,7 @@ impl CatmullRom {
         let tension = tension.nodal(&polygon, "tension", "in [0, 1)", valid)?;
         let factors = tension.iter().map(|t| 1.0 - t).collect();
         let (legs, _) = Handles::new(&polygon, factors).into_legs_and_factors();
-        Self::assemble(polygon, legs, tension, continuity)
+        Self::assemble(polygon, legs, false, tension, continuity)
     }
 
     /// The Catmull–Rom curve with the largest handles that keep the shape of the data.
@@ -140,22 +141,24 @@ impl CatmullRom {
     ) -> Result<Fit<Self>, FitError> {
         options.validate()?;
         let HandleOptions { criteria, tolerances, continuity, .. } = *options;
-        let Checked { mut legs, mut factors, faults, applicable } = limited(&polygon, options);
-        let (mut outcome, report) = if faults.is_empty() {
-            (Outcome::solved(), ShapeReport::clean(legs.len(), criteria, applicable))
+        let Checked { mut legs, mut factors, found } = limited(&polygon, options);
+        let mut checked = !found.cramped;
+        let (mut outcome, report) = if found.faults.is_empty() {
+            (Outcome::solved(), ShapeReport::clean(legs.len(), criteria, found.applicable))
         } else {
             // What the closed forms leave: coplanarity, and faults of rounding.
             let checker = Checker::new(&polygon, criteria, tolerances);
             let mut handles = Handles::under_tension(&polygon, legs, factors);
             let rest =
                 SearchOptions { criteria, tolerances, step: 0.25, ..SearchOptions::default() };
-            let found = search_and_report(&mut handles, &checker, &rest, monitor)?;
+            let searched = search_and_report(&mut handles, &checker, &rest, monitor)?;
             (legs, factors) = handles.under_their_tension();
-            found
+            checked = false;
+            searched
         };
-        let tension: Vec<f64> = factors.into_iter().map(|factor| 1.0 - factor).collect();
-        outcome.diagnostics.nodes_changed = tension.iter().filter(|&&t| t > 0.0).count();
-        let curve = Self::assemble(polygon, legs, tension, continuity)?;
+        let (tension, shortened) = tensions(factors);
+        outcome.diagnostics.nodes_changed = shortened;
+        let curve = Self::assemble(polygon, legs, checked, tension, continuity)?;
         Ok(Fit { curve, outcome, report })
     }
 
@@ -165,16 +168,44 @@ impl CatmullRom {
         self.continuity
     }
 
+    /// `checked`: whether the legs are known to be finite and of a size that curves can have.
     fn assemble(
         polygon: DataPolygon,
-        legs: Vec<[shapespline_geometry::DVec3; 2]>,
+        legs: Vec<[DVec3; 2]>,
+        checked: bool,
         tension: Vec<f64>,
         continuity: Continuity,
     ) -> Result<Self, FitError> {
         let boundary = polygon.boundary();
         let tension = per_point(tension, polygon.is_closed());
-        Ok(Self { curve: PiecewiseCubic::through(polygon, legs)?, tension, boundary, continuity })
+        let curve = if checked {
+            PiecewiseCubic::through_checked(polygon, legs)
+        } else {
+            PiecewiseCubic::through(polygon, legs)?
+        };
+        Ok(Self { curve, tension, boundary, continuity })
     }
+}
+
+/// Nodes from which on factors are turned into tensions on all threads.
+const MANY: usize = 65_536;
+
+/// The tension at each node, of the factor that is left of its handles; and how many were shortened.
+fn tensions(mut factors: Vec<f64>) -> (Vec<f64>, usize) {
+    let turn = |factors: &mut [f64]| {
+        let mut shortened = 0;
+        for factor in factors {
+            *factor = 1.0 - *factor;
+            shortened += usize::from(*factor > 0.0);
+        }
+        shortened
+    };
+    let shortened = if factors.len() < MANY {
+        turn(&mut factors)
+    } else {
+        factors.par_chunks_mut(MANY / 8).map(turn).sum()
+    };
+    (factors, shortened)
 }
 
 impl Interpolant for CatmullRom {

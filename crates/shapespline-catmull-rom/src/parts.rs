@@ -2,7 +2,7 @@
 //! cache. Everything is local: stretches know nothing of each other.
 
 use rayon::prelude::*;
-use shapespline_criteria::{Faults, StretchChecker};
+use shapespline_criteria::StretchChecker;
 use shapespline_geometry::{DVec3, DataPolygon, Stretch};
 
 use crate::{
@@ -21,10 +21,7 @@ pub(crate) struct Checked {
     pub(crate) legs: Vec<[DVec3; 2]>,
     /// What closed forms shortened the handles by; the smaller factor at each distinct node.
     pub(crate) factors: Vec<f64>,
-    /// The segments that fail, ascending.
-    pub(crate) faults: Vec<(usize, Faults)>,
-    /// How many segments each criterion applies to.
-    pub(crate) applicable: [usize; 6],
+    pub(crate) found: Found,
 }
 
 /// The largest handles within the bounds, checked. Cost O(N), on all threads for long curves.
@@ -62,5 +59,5 @@ pub(crate) fn limited(polygon: &DataPolygon, options: &HandleOptions) -> Checked
     };
     // An open curve has one more node, its end.
     factors[n..].fill(last);
-    Checked { legs, factors, faults: found.faults, applicable: found.applicable }
+    Checked { legs, factors, found }
 }

@@ -53,6 +53,8 @@ pub(crate) struct Found {
     pub(crate) faults: Vec<(usize, Faults)>,
     /// How many segments each criterion applies to.
     pub(crate) applicable: [usize; 6],
+    /// Whether some legs are not finite, or leave no room for sums of them.
+    pub(crate) cramped: bool,
 }
 
 impl Found {
@@ -60,6 +62,7 @@ impl Found {
     pub(crate) fn and(mut self, after: Self) -> Self {
         self.faults.extend(after.faults);
         self.count(after.applicable);
+        self.cramped |= after.cramped;
         self
     }
 
@@ -92,6 +95,7 @@ impl StretchHandles {
         let all = [&self.first, &self.last];
         checker.faults(&self.stretch, &self.calls, all, &mut found.faults);
         found.count(StretchChecker::applicable(&self.stretch, &self.calls));
+        found.cramped |= !all.iter().all(|legs| legs.have_room(self.stretch.own()));
         for (j, (legs, factor)) in self.stretch.own().zip(legs.iter_mut().zip(factors)) {
             *legs = [self.first.get(j), self.last.get(j)];
             *factor = self.factor(j - 1);

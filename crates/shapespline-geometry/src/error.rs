@@ -144,9 +144,14 @@ pub enum InputError {
 /// Points and legs are summed with weights up to one: so much room has to be left.
 const ROOM: f64 = 16.0;
 
+/// One where a number is not finite or leaves no room for sums of it.
+#[inline(always)]
+pub(crate) fn outside(x: f64) -> u64 {
+    u64::from(!(x.abs() <= f64::MAX / ROOM))
+}
+
 /// Checks that coordinates are numbers that leave room for sums of them. O(n), without a branch an entry.
 pub(crate) fn check_room(argument: &'static str, points: &[DVec3]) -> Result<(), InputError> {
-    let outside = |x: f64| u64::from(!(x.abs() <= f64::MAX / ROOM));
     if points.iter().map(|p| outside(p.x) + outside(p.y) + outside(p.z)).sum::<u64>() == 0 {
         return Ok(());
     }

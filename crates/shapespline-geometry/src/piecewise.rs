@@ -129,11 +129,19 @@ impl PiecewiseCubic {
     /// # Errors
     /// Not one pair of legs a segment; legs that are not finite.
     pub fn through(polygon: DataPolygon, legs: Vec<[DVec3; 2]>) -> Result<Self, InputError> {
+        check_legs(&legs)?;
+        Ok(Self::through_checked(polygon, legs))
+    }
+
+    /// [`Self::through`] for legs that [have room](crate::Lanes::have_room), as was found while they
+    /// were made: long ones are not read from memory once more.
+    #[must_use]
+    pub fn through_checked(polygon: DataPolygon, legs: Vec<[DVec3; 2]>) -> Self {
+        debug_assert!(check_legs(&legs).is_ok());
         let domain = if polygon.is_closed() { Domain::Closed } else { Domain::Open };
         let dimension = polygon.dimension();
         let (points, knots) = polygon.into_points_and_parameters();
-        check_legs(&legs)?;
-        Ok(Self { knots, points, legs, dimension, domain, locator: OnceLock::new() })
+        Self { knots, points, legs, dimension, domain, locator: OnceLock::new() }
     }
 
     /// The knots `u_0 < … < u_N`.

@@ -11,6 +11,7 @@ use glam::DVec3;
 
 use crate::{
     DataPolygon,
+    error::outside,
     vector::{is_ordinary, normalize},
 };
 
@@ -41,6 +42,13 @@ impl Lanes {
     #[inline(always)]
     pub fn set(&mut self, j: usize, v: DVec3) {
         (self.x[j], self.y[j], self.z[j]) = (v.x, v.y, v.z);
+    }
+
+    /// Whether the vectors of some places are finite and leave room for sums of them (1.1e307).
+    #[must_use]
+    pub fn have_room(&self, places: Range<usize>) -> bool {
+        let count = |row: &[f64]| row[places.clone()].iter().map(|&x| outside(x)).sum::<u64>();
+        count(&self.x) + count(&self.y) + count(&self.z) == 0
     }
 }
 
