@@ -43,7 +43,7 @@ pub enum BoxQpError {
         expected: usize,
     },
     /// A bound pair is empty or not a number.
-    #[error("lower[{index}] = {lower} is above upper[{index}] = {upper}")]
+    #[error("no number lies between lower[{index}] = {lower} and upper[{index}] = {upper}")]
     EmptyBox {
         /// The variable.
         index: usize,
@@ -173,13 +173,15 @@ fn validate(program: &TridiagonalBoxQp<'_>) -> Result<(), BoxQpError> {
     }
     // Every entry is looked at: a loop that may end early is not done several numbers at once.
     let bounds = || program.lower.iter().zip(program.upper);
-    let sound = bounds().fold(true, |all, (l, u)| all & (l <= u))
+    // An infinite bound on the wrong side leaves no number either.
+    let has_room = |l: f64, u: f64| (l <= u) & (l < f64::INFINITY) & (u > f64::NEG_INFINITY);
+    let sound = bounds().fold(true, |all, (l, u)| all & has_room(*l, *u))
         & program.diagonal.iter().fold(true, |all, d| all & (*d > 0.0));
     if sound {
         return Ok(());
     }
     for (index, (&lower, &upper)) in bounds().enumerate() {
-        if !(lower <= upper) {
+        if !has_room(lower, upper) {
             return Err(BoxQpError::EmptyBox { index, lower, upper });
         }
     }

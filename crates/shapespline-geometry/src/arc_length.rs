@@ -26,7 +26,8 @@ const MANY: usize = 8192;
 impl CubicSegment {
     /// Length of the part `[from, to]`, by adaptive Gauss–Legendre quadrature: a ten-point rule is
     /// accepted when its two halves agree with it to `1e-13` of the segment's Bézier polygon
-    /// (times `|t|³` beyond its ends). Backwards the length is negative.
+    /// (times `|t|³` beyond its ends). Where the curve all but stops the part is cut: no rule sees
+    /// what happens beyond its last node. Backwards the length is negative.
     #[must_use]
     pub fn arc_length(&self, from: f64, to: f64) -> f64 {
         let largest = self.a.abs().max(self.b.abs()).max(self.c.abs()).max_element();
@@ -42,8 +43,66 @@ impl CubicSegment {
         // than they are would halve intervals without end.
         let reach = 1.0f64.max(from.abs()).max(to.abs());
         let size = (length(a) + length(b) + length(c)) * (reach * reach * reach);
-        unit * adaptive(&scaled, from, to, rule(&scaled, from, to), ACCURACY * size, 40)
+        let [low, high] = [from.min(to), from.max(to)];
+        let [stop, other] = stops(&scaled, low, high);
+        let part = |from: f64, to: f64| {
+            adaptive(&scaled, from, to, rule(&scaled, from, to), ACCURACY * size, 40)
+        };
+        let sum = part(low, stop)
+            + if stop < high { part(stop, other) } else { 0.0 }
+            + if other < high { part(other, high) } else { 0.0 };
+        if from <= to { unit * sum } else { -unit * sum }
     }
+}
+
+/// Speed, in terms of the longest leg, below which a minimum of it counts as a corner of its graph.
+const SLOW: f64 = 0.25;
+
+/// The parameters between two others, ascending, at which the speed has a minimum near zero; `high`
+/// where there is none. The longest leg has about the length one.
+fn stops(segment: &CubicSegment, low: f64, high: f64) -> [f64; 2] {
+    // γ′/3 = A + Bt + Ct², and half the derivative of its square, a cubic.
+    let CubicSegment { a, b, c, .. } = *segment;
+    let (first, second) = ((b - a) * 2.0, (a - b) + (c - b));
+    let q = [
+        a.dot(first),
+        first.dot(first) + 2.0 * a.dot(second),
+        3.0 * first.dot(second),
+        2.0 * second.dot(second),
+    ];
+    let at = |t: f64| q[0] + t * (q[1] + t * (q[2] + t * q[3]));
+    // Between the extrema of the cubic there is one zero at most.
+    let discriminant = q[2] * q[2] - 3.0 * q[1] * q[3];
+    let mut turns = [high; 2];
+    if discriminant > 0.0 {
+        // No digits cancel in the larger root; the product of both is q₁/3q₃.
+        let large = -(q[2] + discriminant.sqrt().copysign(q[2]));
+        let roots = [large / (3.0 * q[3]), q[1] / large];
+        turns = [roots[0].min(roots[1]), roots[0].max(roots[1])];
+        // What is no number, of a cubic that is none, is beyond the end.
+        turns = turns.map(|t| if low < t && t < high { t } else { high });
+        turns.sort_by(f64::total_cmp);
+    }
+    let mut found = [high; 2];
+    let mut count = 0;
+    for [mut from, mut to] in [[low, turns[0]], turns, [turns[1], high]] {
+        if !(at(from) < 0.0 && at(to) > 0.0) {
+            continue;
+        }
+        loop {
+            let middle = 0.5 * (from + to);
+            if !(from < middle && middle < to) {
+                break;
+            }
+            if at(middle) < 0.0 { from = middle } else { to = middle }
+        }
+        // A cubic falls and rises again twice at most.
+        if count < 2 && length(segment.derivatives(from)[0]) < SLOW {
+            found[count] = from;
+            count += 1;
+        }
+    }
+    found
 }
 
 fn rule(segment: &CubicSegment, from: f64, to: f64) -> f64 {
@@ -178,6 +237,25 @@ mod tests {
 
     fn parabola_length(u: f64) -> f64 {
         0.5 * u * (1.0 + 4.0 * u * u).sqrt() + 0.25 * (2.0 * u).asinh()
+    }
+
+    /// There and back on a line: however the end of a part lies to the turn, its length is known.
+    #[test]
+    fn turns_are_seen_wherever_they_lie() {
+        let (a, c) = (DVec3::new(0.0, 0.0, -6e204), DVec3::new(4e99, 0.0, 0.0));
+        let [forth, back] = [1.0, -1.0]
+            .map(|size| CubicSegment::from_end_legs(DVec3::ZERO, DVec3::X * 1e100, a * size, c));
+        // 3a t(1 − t)² on the line, which turns at 1/3.
+        let way = |t: f64| 18e204 * t * (1.0 - t) * (1.0 - t);
+        let expected = |t: f64| if 3.0 * t < 1.0 { way(t) } else { 2.0 * way(1.0 / 3.0) - way(t) };
+        for k in 0..=4000 {
+            let t = f64::from(k) / 4000.0;
+            for segment in [forth, back] {
+                let size = 1e-13 * 18e204;
+                assert!((segment.arc_length(0.0, t) - expected(t)).abs() < size, "{t}");
+                assert!((segment.arc_length(t, 0.0) + expected(t)).abs() < size, "{t}");
+            }
+        }
     }
 
     #[test]

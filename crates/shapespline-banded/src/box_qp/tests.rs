@@ -112,7 +112,12 @@ fn bad_input_is_named() {
         lower: &[0.0, 2.0],
         upper: &[1.0, 1.0],
     };
-    assert_eq!(solve(&program).unwrap_err().to_string(), "lower[1] = 2 is above upper[1] = 1");
+    let expected = "no number lies between lower[1] = 2 and upper[1] = 1";
+    assert_eq!(solve(&program).unwrap_err().to_string(), expected);
+    for infinite in [f64::INFINITY, f64::NEG_INFINITY] {
+        let program = TridiagonalBoxQp { lower: &[infinite; 2], upper: &[infinite; 2], ..program };
+        assert!(matches!(solve(&program), Err(BoxQpError::EmptyBox { index: 0, .. })));
+    }
     program.lower = &[0.0, f64::NAN];
     assert!(matches!(solve(&program), Err(BoxQpError::EmptyBox { index: 1, .. })));
     program.lower = &[0.0];
