@@ -2,7 +2,7 @@
 
 use crate::MonotoneError;
 use crate::Slopes;
-use crate::data::{Data, Units, check_finite, first};
+use crate::data::{Data, PART, Units, check_finite, first};
 use crate::extrapolation::Extrapolation;
 use crate::spline::{Cached, Kind, MonotoneSpline};
 use std::ops::Deref;
@@ -112,8 +112,8 @@ impl MonotoneQuartic {
                 }
             }
         }
-        let Made { d, e, scale, records, sound } =
-            Pass { x, y, units, given, shape: &options.shape }.make();
+        let pass = Pass { x, y, units, given, shape: &options.shape };
+        let Made { d, e, scale, records, sound } = pass.make();
         if !sound {
             // A spacing or a secant out of range, or a slope in the data's units: what and where.
             Data::new(x, y)?;
@@ -121,9 +121,14 @@ impl MonotoneQuartic {
                 return Err(crate::data::out_of_range("secant slope", "y", i, y[i]));
             }
         }
+        let (own_x, own_y) = if n < PART {
+            (x.to_vec(), y.to_vec())
+        } else {
+            rayon::join(|| x.to_vec(), || y.to_vec())
+        };
         let spline = MonotoneSpline {
-            x: x.to_vec(),
-            y: y.to_vec(),
+            x: own_x,
+            y: own_y,
             d,
             kind: Kind::Quartic { e },
             records,

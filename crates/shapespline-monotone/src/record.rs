@@ -40,6 +40,13 @@ impl Record {
     #[inline(always)]
     pub(crate) fn assembled(x: &[f64], y: &[f64], q: &[[f64; TILE]; 4]) -> [Self; TILE] {
         let mut records = [Self::default(); TILE];
+        Self::assemble(x, y, q, &mut records);
+        records
+    }
+
+    /// [`Self::assembled`] where there is room for them already; those after the last stay as they are.
+    #[inline(always)]
+    pub(crate) fn assemble(x: &[f64], y: &[f64], q: &[[f64; TILE]; 4], records: &mut [Self; TILE]) {
         let points = x.windows(2).zip(y.windows(2));
         // Number by number: a record that is made first and moved then is read before it is written out.
         for (j, (record, (x, y))) in records.iter_mut().zip(points).enumerate() {
@@ -51,7 +58,6 @@ impl Record {
                 record.q[k] = q[k][j];
             }
         }
-        records
     }
 
     #[inline]

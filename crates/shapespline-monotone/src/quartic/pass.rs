@@ -1,7 +1,7 @@
 //! All of the quartic's numbers in one pass over the data: tiles that stay in a core's first cache.
 
 use super::Shape;
-use super::scale::{keeps, largest_scale};
+use super::scale::{Failing, keeps};
 use crate::data::{PowerOfTwo, Units};
 use crate::record::{Record, TILE};
 use crate::slopes::{end, harmonic, limit};
@@ -31,39 +31,92 @@ pub(super) struct Made {
     pub(super) sound: bool,
 }
 
-/// A tile's own numbers of d, e and λ.
-type Parts<'a> = ((&'a mut [f64], &'a mut [f64]), &'a mut [f64]);
+/// One number a segment of a tile.
+type Numbers = [f64; TILE];
+/// A tile's records and its d, e and λ; and those of all tiles, collected without zeros to overwrite.
+type Tile = (([Record; TILE], Numbers), (Numbers, Numbers));
+type Tiles = ((Vec<[Record; TILE]>, Vec<Numbers>), (Vec<Numbers>, Vec<Numbers>));
+
+/// The numbers of a tile on the way, and what it makes of them: kept from tile to tile, for what is overwritten need
+/// not be zeroed anew.
+struct Scratch {
+    h: [f64; TILE + 2],
+    /// `delta[j + 1]` belongs to segment j of the tile.
+    delta: [f64; TILE + 2],
+    d: [f64; TILE + 1],
+    /// End slopes and the full e, in units of the secant.
+    m: [Numbers; 2],
+    full: Numbers,
+    /// Which conditions fail, and those.
+    which: [usize; TILE],
+    failing: Failing,
+    step: Numbers,
+    q: [Numbers; 4],
+    slopes: Numbers,
+    e: Numbers,
+    lambda: Numbers,
+    records: [Record; TILE],
+}
+
+impl Default for Scratch {
+    fn default() -> Self {
+        let zeros = [0.0; TILE];
+        Self {
+            h: [1.0; TILE + 2],
+            delta: [0.0; TILE + 2],
+            d: [0.0; TILE + 1],
+            m: [zeros; 2],
+            full: zeros,
+            which: [0; TILE],
+            failing: Failing::default(),
+            step: zeros,
+            q: [zeros; 4],
+            slopes: zeros,
+            e: zeros,
+            lambda: zeros,
+            records: [Record::default(); TILE],
+        }
+    }
+}
 
 impl Pass<'_> {
     pub(super) fn make(&self) -> Made {
         let n = self.x.len() - 1;
-        let (mut d, mut e, mut scale) = (vec![0.0; n + 1], vec![0.0; n], vec![0.0; n]);
         let sound = AtomicBool::new(true);
-        let work = |(tile, ((d, e), scale)): (usize, Parts<'_>)| {
+        let work = |scratch: &mut Scratch, tile: usize| -> Tile {
             let start = tile * TILE;
             // A length that is known beforehand: nearly all tiles are full.
-            let (records, fine) = if d.len() == TILE {
-                self.tile(start, TILE, d, e, scale)
+            let fine = if n - start >= TILE {
+                self.tile(start, TILE, scratch)
             } else {
-                self.tile(start, d.len(), d, e, scale)
+                self.tile(start, n - start, scratch)
             };
             if !fine {
                 sound.store(false, Ordering::Relaxed);
             }
-            records
+            ((scratch.records, scratch.slopes), (scratch.e, scratch.lambda))
         };
-        let tiles: Vec<[Record; TILE]> = if n <= 2 * TILE * TILES {
-            let parts = d[..n].chunks_mut(TILE).zip(e.chunks_mut(TILE));
-            parts.zip(scale.chunks_mut(TILE)).enumerate().map(work).collect()
+        let count = n.div_ceil(TILE);
+        let ((records, d), (e, scale)): Tiles = if count <= 2 * TILES {
+            let mut scratch = Scratch::default();
+            (0..count).map(|tile| work(&mut scratch, tile)).unzip()
         } else {
-            let parts = d[..n].par_chunks_mut(TILE).zip(e.par_chunks_mut(TILE));
-            let parts = parts.zip(scale.par_chunks_mut(TILE)).enumerate();
-            parts.with_min_len(TILES).map(work).collect()
+            let tiles = (0..count).into_par_iter().with_min_len(TILES);
+            tiles.map_init(Scratch::default, work).unzip()
         };
-        let mut records = tiles.into_flattened();
+        let numbers = |tiles: Vec<Numbers>| {
+            let mut numbers = tiles.into_flattened();
+            numbers.truncate(n);
+            numbers
+        };
+        let (mut d, e, scale) = (numbers(d), numbers(e), numbers(scale));
+        let mut records = records.into_flattened();
         records.truncate(n);
-        d[n] = self.units.slope().scale(self.end_slope(n));
-        let sound = sound.into_inner() && d[n].is_finite();
+        let end = self.units.slope().scale(self.end_slope(n));
+        // There is room unless all tiles are full; then for this one only, not for as many again.
+        d.reserve_exact(1);
+        d.push(end);
+        let sound = sound.into_inner() && end.is_finite();
         Made { d, e, scale, records, sound }
     }
 
@@ -96,19 +149,11 @@ impl Pass<'_> {
     /// The numbers of `n` segments from `start` on; records after the last are of no meaning. Nothing but arithmetic
     /// and selections, from one small array to another: done for several segments at once.
     #[inline(always)]
-    fn tile(
-        &self,
-        start: usize,
-        n: usize,
-        d_out: &mut [f64],
-        e_out: &mut [f64],
-        scale: &mut [f64],
-    ) -> ([Record; TILE], bool) {
-        let (d_out, e_out, scale) = (&mut d_out[..n], &mut e_out[..n], &mut scale[..n]);
+    fn tile(&self, start: usize, n: usize, scratch: &mut Scratch) -> bool {
+        let Scratch { h, delta, d, .. } = scratch;
         let all = self.x.len() - 1;
         let (x, y) = (&self.x[start..=start + n], &self.y[start..=start + n]);
         // One segment more on either side where there is one; at the ends the last one again.
-        let (mut h, mut delta) = ([1.0; TILE + 2], [0.0; TILE + 2]);
         self.units.differences(x, y, &mut h[1..=n], &mut delta[1..=n]);
         let own = 1..=n;
         let mut sound = h[own.clone()]
@@ -128,7 +173,6 @@ impl Pass<'_> {
         if start + n == all {
             delta[n + 1] = delta[n];
         }
-        let mut d = [0.0; TILE + 1];
         if let Some(given) = self.given {
             for j in 0..=n {
                 d[j] = limit(self.scaled(given[start + j]), delta[j], delta[j + 1]);
@@ -144,14 +188,14 @@ impl Pass<'_> {
                 d[n] = self.end_slope(all);
             }
         }
-        let (mut lambda, mut full) = ([1.0; TILE], [0.0; TILE]);
-        self.scales(start, n, &d, &delta, &mut lambda, &mut full);
+        self.scales(start, n, scratch);
+        let Scratch { h, delta, d, full, step, q, slopes, e, lambda, records, .. } = scratch;
         // In the data's units.
         let (unit, slope) = (self.units.y(), self.units.slope());
-        let (mut q0, mut q1, mut q2) = ([0.0; TILE], [0.0; TILE], [0.0; TILE]);
-        // What is the tile's own cannot overlap, which would have to be asked in every loop.
-        let (mut step, mut e) = ([0.0; TILE], [0.0; TILE]);
-        step[..n].iter_mut().zip(y.windows(2)).for_each(|(step, y)| *step = y[1] - y[0]);
+        let [q0, q1, q2, _] = q;
+        for j in 0..n {
+            step[j] = y[j + 1] - y[j];
+        }
         for j in 0..n {
             let (secant, h) = (delta[j + 1], h[j + 1]);
             // Flat segments have slopes and e of zero, and a λ of one, as they are.
@@ -159,56 +203,50 @@ impl Pass<'_> {
             let m = [unit.scale(h * d[j]), unit.scale(h * d[j + 1])];
             [q0[j], q1[j], q2[j]] = Record::quartic_form(step[j], m, e[j]);
         }
-        d_out.iter_mut().zip(&d).for_each(|(out, d)| *out = slope.scale(*d));
-        e_out.copy_from_slice(&e[..n]);
-        scale.copy_from_slice(&lambda[..n]);
-        sound &= d_out.iter().fold(true, |all, d| all & d.is_finite());
-        let q = [q0, q1, q2, [0.0; TILE]];
-        (Record::assembled(x, y, &q), sound)
+        for j in 0..n {
+            slopes[j] = slope.scale(d[j]);
+        }
+        sound &= slopes[..n].iter().fold(true, |all, d| all & d.is_finite());
+        Record::assemble(x, y, q, records);
+        sound
     }
 
-    /// λ, and the full e in units of the secant; `delta[j + 1]` belongs to segment j of the tile.
+    /// λ, and the full e in units of the secant.
     #[inline(always)]
-    fn scales(
-        &self,
-        start: usize,
-        n: usize,
-        d: &[f64; TILE + 1],
-        delta: &[f64; TILE + 2],
-        lambda: &mut [f64; TILE],
-        full: &mut [f64; TILE],
-    ) {
-        let (mut m0, mut m1) = ([0.0; TILE], [0.0; TILE]);
-        let (mut alpha, mut beta) = ([0.0; TILE], [0.0; TILE]);
-        match self.shape {
-            Shape::Uniform(a) => (alpha[..n].fill(*a), beta[..n].fill(*a)),
-            Shape::Segments { alpha: a, beta: b } => (
-                alpha[..n].copy_from_slice(&a[start..start + n]),
-                beta[..n].copy_from_slice(&b[start..start + n]),
-            ),
-        };
+    fn scales(&self, start: usize, n: usize, scratch: &mut Scratch) {
+        let Scratch { delta, d, m: [m0, m1], full, which, failing, lambda, .. } = scratch;
         for j in 0..n {
             // In units of the secant everything is of order one.
             let secant = if delta[j + 1] == 0.0 { 1.0 } else { delta[j + 1] };
             (m0[j], m1[j]) = (d[j] / secant, d[j + 1] / secant);
-            full[j] = 2.0 / 3.0 * (alpha[j] * m0[j] - beta[j] * m1[j]);
+        }
+        match self.shape {
+            Shape::Uniform(a) => {
+                for j in 0..n {
+                    full[j] = 2.0 / 3.0 * (a * m0[j] - a * m1[j]);
+                }
+            }
+            Shape::Segments { alpha, beta } => {
+                let (alpha, beta) = (&alpha[start..start + n], &beta[start..start + n]);
+                for j in 0..n {
+                    full[j] = 2.0 / 3.0 * (alpha[j] * m0[j] - beta[j] * m1[j]);
+                }
+            }
         }
         // Those whose conditions (12), (13) fail, listed without a branch: which they are cannot be predicted.
-        let (mut failing, mut count) = ([0; TILE], 0);
+        let mut count = 0;
         for j in 0..n {
-            failing[count] = j;
+            which[count] = j;
             count += usize::from(!keeps(m0[j], m1[j], full[j]));
         }
-        // Side by side first: several are solved at once.
-        let (mut a, mut b, mut e) = ([0.0; TILE], [0.0; TILE], [0.0; TILE]);
-        for (k, &j) in failing[..count].iter().enumerate() {
-            (a[k], b[k], e[k]) = (m0[j], m1[j], full[j]);
+        let which = &which[..count];
+        for (k, &j) in which.iter().enumerate() {
+            failing.set(k, m0[j], m1[j], full[j]);
         }
-        for (e, (a, b)) in e[..count].iter_mut().zip(a[..count].iter().zip(&b[..count])) {
-            *e = largest_scale(*a, *b, *e);
-        }
-        for (k, &j) in failing[..count].iter().enumerate() {
-            lambda[j] = e[k];
+        failing.solve(count);
+        lambda.fill(1.0);
+        for (k, &j) in which.iter().enumerate() {
+            lambda[j] = failing.lambda[k];
         }
     }
 }
