@@ -142,7 +142,10 @@ fn calculus(bytes: &mut Bytes<'_>, f: &shapespline::monotone::MonotoneSpline, qu
         let jump = around.windows(2).any(|v| v[0].min(v[1]) <= level && level <= v[0].max(v[1]));
         assert!(near || jump, "f({s}) = {around:?}, not {level}");
     }
-    let level = y[0] + (y[y.len() - 1] - y[0]) * bytes.fraction();
+    let [first, last] = [y[0], y[y.len() - 1]];
+    // Rounding may lead beyond the last value, where there is no answer.
+    let level =
+        (first + (last - first) * bytes.fraction()).max(first.min(last)).min(first.max(last));
     match f.inverse(level) {
         // Halfway between values that overflow there is nothing to look for.
         Ok(s) => assert!(level.is_infinite() || (x[0] <= s && s <= x[x.len() - 1]), "{level}: {s}"),
