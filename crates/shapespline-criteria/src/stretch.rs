@@ -139,4 +139,34 @@ mod tests {
             assert!(failed.any(Faults::of(criterion)), "{criterion}");
         }
     }
+
+    /// A binormal at a right angle, to the last bit, to the one that it has to oppose is a fault here as
+    /// well: no doubt may be lost because a product is zero and not positive.
+    #[test]
+    fn a_product_of_zero_is_a_fault() {
+        // Binormal vectors along (0, 0, 1) and (0, 1, −1): the second segment inflects.
+        let points = [[0.0, 1.0, 0.0], [0.0; 3], [1.0, 0.0, 0.0], [1.0, -1.0, -1.0]];
+        let points = points.map(DVec3::from).to_vec();
+        let boundary = Boundary::ZeroCurvature;
+        let polygon = DataPolygon::new(points, &Parametrization::Uniform, boundary).unwrap();
+        let (criteria, tolerances) = (Criteria::EVERY, Tolerances::default());
+        let local = StretchChecker::new(&polygon, criteria, tolerances);
+        let (mut stretch, mut calls) = (Stretch::default(), [Calls::default(); Stretch::ROOM]);
+        stretch.load(&polygon, 0..3);
+        local.calls(&stretch, &mut calls);
+        let place = stretch.own().start + 1;
+        assert_eq!(
+            calls[place].criteria(),
+            [Criterion::Inflection, Criterion::Torsion].into_iter().collect()
+        );
+
+        // ω(1) is (−1, 3, 0)/16 for these legs.
+        let (mut first, mut last) = (Lanes::default(), Lanes::default());
+        first.set(place, DVec3::new(0.25, -0.25, 0.0));
+        last.set(place, DVec3::new(0.375, 0.125, -0.25));
+        let mut faults = Vec::new();
+        local.faults(&stretch, &calls, [&first, &last], &mut faults);
+        let found = faults.iter().find(|(i, _)| *i == 1).map(|f| f.1).unwrap();
+        assert!(found.any(Faults::INFLECTION_AT_END) && !found.any(Faults::INFLECTION_AT_START));
+    }
 }

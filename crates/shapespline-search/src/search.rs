@@ -318,3 +318,17 @@ fn merge(ranges: &mut Vec<Range<usize>>) {
         meets
     });
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn runs_join_over_the_seam_of_closed_data_only() {
+        assert_eq!(consecutive(&[0, 1, 4, 5, 9], None), [vec![0, 1], vec![4, 5], vec![9]]);
+        assert_eq!(consecutive(&[0, 1, 4, 5, 9], Some(10)), [vec![4, 5], vec![9, 0, 1]]);
+        // Another segment comes after the last one here.
+        assert_eq!(consecutive(&[0, 1, 4, 5, 9], Some(11)), [vec![0, 1], vec![4, 5], vec![9]]);
+        assert_eq!(consecutive(&[0, 1, 2], Some(3)), [vec![0, 1, 2]]);
+    }
+}

@@ -236,6 +236,118 @@ fn splines_with_knots_between_the_points() {
     assert_eq!(count.violated, count.applicable);
 }
 
+/// Margins of curves that are no cubics, worked out by hand.
+#[test]
+fn margins_of_a_parabola_and_of_a_cube_by_hand() {
+    let record = |points: [[f64; 2]; 4], legs: [[f64; 2]; 2], criterion: Criterion| {
+        let natural = Boundary::ZeroCurvature;
+        let polygon = DataPolygon::planar(&points, &Parametrization::Uniform, natural).unwrap();
+        let own = legs.map(|[x, y]| DVec3::new(x, y, 0.0));
+        let legs = |i: usize| if i == 1 { own } else { [polygon.chord(i) / 3.0; 2] };
+        let pieces = cubic_pieces(&polygon, legs);
+        let raised = pieces.iter().flat_map(|p| elevated(&p.map(|p| p.extend(1.0))));
+        let control: Vec<DVec3> = raised.map(|p| p.truncate()).collect();
+        let breaks = polygon.parameters().to_vec();
+        let curve = PiecewiseBezier::new(breaks, &control, 4, Dimension::Two).unwrap();
+        let tolerances = Tolerances::default();
+        let any = CurveChecker::new(&polygon, &curve, Criteria::EVERY, tolerances, INTERPOLATION);
+        any.unwrap().record(1, criterion)
+    };
+    // y = x² on [0, 1]: ω/(‖γ'‖ σ₂) and 2(γ×γ')/(t²‖γ'‖ σ₂) are 1/√(1+4t²), the third quotient is 1.
+    let parabola = [[-1.0, 1.0], [0.0, 0.0], [1.0, 1.0], [2.0, 4.0]];
+    let legs = [[1.0 / 3.0, 0.0], [1.0 / 3.0, 2.0 / 3.0]];
+    for criterion in [Criterion::Convexity, Criterion::GlobalConvexity] {
+        let found = record(parabola, legs, criterion);
+        assert!((found.margin - 0.2f64.sqrt()).abs() < 1e-8, "{found:?}");
+        assert!((found.location - 2.0).abs() < 1e-6, "{found:?}");
+    }
+    // y = (x − 1/2)³ on [0, 1]: at the ends ω = ∓3, ‖γ'‖ = 5/4, σ₂ = 3; between them it falls by more.
+    let cube = [[-1.0, -2.125], [0.0, -0.125], [1.0, 0.125], [2.0, 2.125]];
+    let found = record(cube, [[1.0 / 3.0, 0.25]; 2], Criterion::Inflection);
+    assert!((found.margin - 0.8).abs() < 1e-8, "{found:?}");
+}
+
+/// A quintic whose `ω`, along the two binormal vectors, is a pair of cubics that are given: where the pair
+/// turns back on its way, some view shows more than one inflection.
+#[test]
+fn what_turns_back_between_the_binormals_is_no_inflection() {
+    let points = [[-1.0, 1.0, 0.0], [0.0; 3], [1.0, 0.0, 0.0], [2.0, -1.0, -1.0]];
+    let points = points.map(DVec3::from).to_vec();
+    let polygon =
+        DataPolygon::new(points.clone(), &Parametrization::Uniform, Boundary::ZeroCurvature);
+    let polygon = polygon.unwrap();
+    let keeps = |x: [f64; 4], y: [f64; 4]| {
+        // γ' = (1, f, g) has ω = (…, −g', f'); the binormal vectors are (0, 0, 1), (0, 1, −1)/√2.
+        let integral = |slope: [f64; 4]| {
+            let mut sums = [0.0; 5];
+            (0..4).for_each(|i| sums[i + 1] = sums[i] + slope[i] / 4.0);
+            let mean = sums.iter().sum::<f64>() / 5.0;
+            sums.map(|s| s - mean)
+        };
+        let f = integral(x);
+        let g = integral(std::array::from_fn(|i| 2f64.sqrt() * y[i] - x[i]));
+        let mut control: Vec<DVec3> = Vec::new();
+        for i in 0..3 {
+            let mut p = points[i];
+            control.push(p);
+            for k in 0..5 {
+                let own = DVec3::new(1.0, f[k], g[k]);
+                p += if i == 1 { own } else { polygon.chord(i) } / 5.0;
+                control.push(p);
+            }
+        }
+        let breaks = polygon.parameters().to_vec();
+        let curve = PiecewiseBezier::new(breaks, &control, 5, Dimension::Three).unwrap();
+        let tolerances = Tolerances::default();
+        let any = CurveChecker::new(&polygon, &curve, Criteria::EVERY, tolerances, INTERPOLATION);
+        let any = any.unwrap();
+        assert_eq!(any.undecided(1, Criterion::Inflection), None);
+        let record = any.record(1, Criterion::Inflection);
+        assert!(record.applicable);
+        record.satisfied
+    };
+    // Both fall. Both have the signs asked for at the ends, but go up on their way: through the second
+    // quadrant of (x, y), and mirrored through the fourth.
+    let (falls, later) = ([1.0, -1.0, -3.0, -6.0], [4.0, 3.0, 1.0, -2.0]);
+    assert!(keeps(falls, later) && keeps(later, falls));
+    let (back, above) = ([1.0, -12.0, 12.0, -6.0], [4.0, -7.0, 14.0, -2.0]);
+    assert!(!keeps(back, above));
+    assert!(!keeps(above, back));
+}
+
+/// Where the parameter begins makes no difference: breaks half a spacing from the points' parameters are
+/// not those parameters, however large all of them are.
+#[test]
+fn a_shift_of_the_parameter_changes_nothing() {
+    // The curve (u, u², u³), by blossoming.
+    let at = |[a, b, c]: [f64; 3]| {
+        DVec3::new((a + b + c) / 3.0, (a * b + b * c + c * a) / 3.0, a * b * c)
+    };
+    let breaks = [0.0, 1.5, 2.0, 3.0];
+    let control: Vec<DVec3> = breaks
+        .windows(2)
+        .map(|w| [w[0], w[1]])
+        .flat_map(|[p, q]| [[p; 3], [p, p, q], [p, q, q], [q; 3]].map(at))
+        .collect();
+    let margins = |shift: f64| {
+        let u: Vec<f64> = (0..4).map(|i| f64::from(i) + shift).collect();
+        let points = (0..4).map(f64::from).map(|u| at([u; 3])).collect();
+        let given = Parametrization::Given(u);
+        let polygon = DataPolygon::new(points, &given, Boundary::ZeroCurvature).unwrap();
+        let breaks = breaks.map(|u| u + shift).to_vec();
+        let curve = PiecewiseBezier::new(breaks, &control, 3, Dimension::Three).unwrap();
+        let tolerances = Tolerances::default();
+        let any = CurveChecker::new(&polygon, &curve, Criteria::EVERY, tolerances, INTERPOLATION);
+        let any = any.unwrap();
+        [Criterion::Convexity, Criterion::Torsion].map(|c| any.record(1, c).margin)
+    };
+    let (near, far) = (margins(0.0), margins(2f64.powi(40)));
+    assert!(near.iter().all(|&m| m > 0.0), "{near:?}");
+    for (near, far) in near.into_iter().zip(far) {
+        assert!((near - far).abs() < 1e-9, "{near} {far}");
+    }
+}
+
 #[test]
 fn what_rounding_hides_is_undecided() {
     // A quadratic in a plane off the axes, raised to a quintic: torsion is zero to rounding.

@@ -242,6 +242,24 @@ fn notes_on_nodes_and_oscillation() {
     assert!(seen.iter().all(|&n| n > 30), "{seen:?}");
 }
 
+/// What counts as straight is what the caller says: at a turn below it there is nothing to note.
+#[test]
+fn notes_go_by_the_tolerances_that_were_given() {
+    let planar = [[0.0, 0.0], [1.0, 0.0], [2.0, 0.05], [3.0, 1.0]];
+    let polygon =
+        DataPolygon::planar(&planar, &Parametrization::Uniform, Boundary::ZeroCurvature).unwrap();
+    let noted = |zero: f64| -> Vec<usize> {
+        let tolerances = Tolerances { zero, ..Tolerances::default() };
+        let checker = Checker::new(&polygon, Criteria::EVERY, tolerances);
+        assert_eq!(checker.tolerances(), tolerances);
+        let notes = checker.notes(|i| [polygon.chord(i) / 3.0; 2]);
+        notes.nodes.iter().map(|r| r.node).collect()
+    };
+    // The polygon turns by 0.05 at node 1, by 0.7 at node 2.
+    assert_eq!(noted(1e-9), [1, 2]);
+    assert_eq!(noted(0.1), [2]);
+}
+
 #[test]
 fn what_polygons_call_for() {
     let shape = |data: &[[f64; 3]]| {

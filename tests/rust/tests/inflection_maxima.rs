@@ -228,6 +228,25 @@ fn the_plane_of_a_rational_cubic_is_certain_only_to_rounding() {
     }
 }
 
+/// The same of a polynomial one: once it is not planar it has 2 (Theorem 7.2), however nearly it is, so no
+/// other count is certain.
+#[test]
+fn the_plane_of_a_cubic_is_certain_only_to_rounding() {
+    let made = |off: f64| {
+        let mut points = [[0.0, 0.0, 0.0], [1.0, 2.0, 0.0], [3.0, 2.0, 0.0], [4.0, 0.5, 0.0]];
+        points[2][2] = off;
+        let points = points.map(DVec3::from);
+        PiecewiseBezier::new(vec![0.0, 1.0], &points, 3, Dimension::Three).unwrap()
+    };
+    let planar = curve_inflections(&made(0.0));
+    assert_eq!((planar.count, planar.exact), (0, true));
+    for k in 2..26 {
+        let off = 10f64.powf(-0.5 * f64::from(k));
+        let most = curve_inflections(&made(off));
+        assert!(!most.exact || most.count == 2, "{off}: {most:?}");
+    }
+}
+
 /// Legs that differ by 1e12 within each piece: what turns by hardly more than rounding is counted, and the
 /// count is no certain one.
 #[test]
