@@ -459,6 +459,19 @@ mod tests {
     }
 
     #[test]
+    fn room_for_other_than_a_row_a_parameter_is_refused() {
+        let curve = planted(&[0.0, 1.0, 3.0], Domain::Open);
+        let into = |room: usize| {
+            Curve::evaluate_into(&curve, &[0.5, 2.0], 0, Side::Right, &mut vec![0.0; room])
+        };
+        assert!(into(6).is_ok());
+        for room in [0, 5, 7] {
+            let error = into(room).unwrap_err().to_string();
+            assert!(error.contains("out") && error.contains('6'), "{error}");
+        }
+    }
+
+    #[test]
     fn parts_that_do_not_belong_together_are_refused() {
         let legs = vec![[DVec3::X, DVec3::X]];
         let make = |knots: &[f64], points: &[DVec3], legs: Vec<[DVec3; 2]>| {

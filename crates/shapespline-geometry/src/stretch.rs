@@ -235,6 +235,25 @@ mod tests {
     use crate::{Boundary, Parametrization};
 
     /// To the bit what the polygon says, at every size, around closed ones and at open ends.
+    /// Every coordinate of every place asked for counts, and no other.
+    #[test]
+    fn vectors_without_room_are_seen() {
+        let places = 3..6;
+        for number in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1.2e307, -1.2e307, 1.1e307] {
+            for place in 0..9 {
+                for axis in DVec3::AXES {
+                    let mut lanes = Lanes::default();
+                    lanes.set(
+                        place,
+                        DVec3::select(axis.cmpgt(DVec3::ZERO), DVec3::splat(number), axis),
+                    );
+                    let room = number == 1.1e307 || !places.contains(&place);
+                    assert_eq!(lanes.have_room(places.clone()), room, "{number} at {place}");
+                }
+            }
+        }
+    }
+
     #[test]
     fn a_stretch_is_what_the_polygon_says() {
         let mut stretch = Stretch::default();
