@@ -166,15 +166,15 @@ impl Resolvable {
         let limit = Self::limit(rows);
         let mut pending = changed.iter().copied().peekable();
         while let Some(first) = pending.next() {
-            // `at` counts on beyond n when a cyclic elimination runs through the first row again.
-            let mut at = first;
+            // `at` counts on beyond n when a cyclic elimination runs through the first row again; `i` is
+            // its row.
+            let (mut at, mut i) = (first, first);
             let mut before = match (first, rows.is_cyclic()) {
                 (0, false) => (0.0, DVec3::ZERO),
                 (0, true) => (self.ratio[n - 1], self.reduced[n - 1]),
                 _ => (self.ratio[first - 1], self.reduced[first - 1]),
             };
             while at < n || (rows.is_cyclic() && at - first < limit) {
-                let i = at % n;
                 while pending.next_if(|&next| next <= at).is_some() {}
                 let now = eliminate(i, rows.row(i), before)?;
                 // A changed row can leave the elimination as it was; the first one always counts.
@@ -184,6 +184,7 @@ impl Resolvable {
                 (self.ratio[i], self.reduced[i]) = now;
                 before = now;
                 at += 1;
+                i = if i + 1 < n { i + 1 } else { 0 };
             }
             ranges.push(first..at);
         }
@@ -212,11 +213,11 @@ impl Resolvable {
             // Counted from n·k upwards, so that a cyclic substitution can run below row 0.
             let lift = if rows.is_cyclic() { n * (limit / n + 2) } else { 0 };
             let (top, start) = (top + lift, range.start + lift);
-            let mut at = top;
+            let (mut at, mut next) = (top, top % n);
             // The significant part of what changes: a change fades away over more rows than matter.
             let (mut lowest, mut highest) = (top, top);
             while at > 0 && top - at < limit + (top - start) {
-                let i = (at - 1) % n;
+                let i = if next > 0 { next - 1 } else { n - 1 };
                 let now = self.reduced[i] - after * self.ratio[i];
                 let was = self.solution[i];
                 if at - 1 < start && was == now && !is_in(ranges, i) {
@@ -231,6 +232,7 @@ impl Resolvable {
                 self.solution[i] = now;
                 after = now;
                 at -= 1;
+                next = i;
             }
             record(lowest..highest, n, touched);
             done = at.saturating_sub(lift);

@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 
 use rayon::prelude::*;
-use shapespline_criteria::{Checker, Criteria, ShapeReport, Tolerances};
+use shapespline_criteria::{Criteria, ShapeReport, Tolerances};
 use shapespline_geometry::{Boundary, DVec3, DataPolygon, InputError, PiecewiseCubic};
 use shapespline_search::{
     Fit, FitError, Interpolant, Outcome, SearchOptions, Step, Tension, per_point, search_and_report,
@@ -147,11 +147,10 @@ impl CatmullRom {
             (Outcome::solved(), ShapeReport::clean(legs.len(), criteria, found.applicable))
         } else {
             // What the closed forms leave: coplanarity, and faults of rounding.
-            let checker = Checker::new(&polygon, criteria, tolerances);
             let mut handles = Handles::under_tension(&polygon, legs, factors);
             let rest =
                 SearchOptions { criteria, tolerances, step: 0.25, ..SearchOptions::default() };
-            let searched = search_and_report(&mut handles, &checker, &rest, monitor)?;
+            let searched = search_and_report(&mut handles, &polygon, &rest, monitor)?;
             (legs, factors) = handles.under_their_tension();
             checked = false;
             searched

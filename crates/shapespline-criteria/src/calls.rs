@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use glam::DVec3;
 use rayon::prelude::*;
-use shapespline_geometry::{Boundary, DataPolygon, Dimension, Stretch, length};
+use shapespline_geometry::{Boundary, DataPolygon, Dimension, Stretch, length, normalize};
 
 use crate::{Criteria, Criterion, Tolerances};
 
@@ -95,6 +95,10 @@ impl Calls {
     /// step 0.0). Cost O(N), and nearly none where the first segments answer.
     #[must_use]
     pub fn is_planar(polygon: &DataPolygon, tolerances: &Tolerances) -> bool {
+        let twists = |i: usize| {
+            let [before, own, after] = [i - 1, i, i + 1].map(|k| normalize(polygon.chord(k)));
+            before.cross(own).dot(after).abs() > tolerances.zero
+        };
         let flat = |stretch: &mut Stretch, own: Range<usize>| {
             stretch.load(polygon, own);
             let (directions, binormals) = (stretch.directions(), stretch.binormals());
@@ -107,7 +111,7 @@ impl Calls {
         };
         let n = polygon.segments();
         polygon.dimension() == Dimension::Two
-            || (flat(&mut Stretch::default(), 0..n.min(FIRST)) && all_stretches(n, flat))
+            || (!(1..n.saturating_sub(1).min(FIRST)).any(twists) && all_stretches(n, flat))
     }
 
     /// What each segment of a polygon calls for among some criteria, where it is known whether the

@@ -3,17 +3,13 @@
 use std::ops::Range;
 
 use glam::DVec3;
-use rayon::prelude::*;
 use shapespline_geometry::DataPolygon;
 
 use crate::{
-    Calls, Criteria, Criterion, Faults, Record, ShapeReport, Tolerances,
+    Calls, Criteria, Criterion, Faults, Record, ShapeReport, Tolerances, WindowChecker,
     faults::{Cones, Situation, faults},
     margin,
 };
-
-/// Segments are checked in parallel in blocks of this many.
-const BLOCK: usize = 4096;
 
 /// The shape criteria of one data polygon.
 #[derive(Debug, Clone)]
@@ -68,16 +64,13 @@ impl<'a> Checker<'a> {
     where
         L: Fn(usize) -> [DVec3; 2] + Sync,
     {
-        let of = |i: usize| {
-            let faults = self.faults(i, legs(i));
-            (!faults.is_empty()).then_some((i, faults))
-        };
-        let n = self.calls.len();
-        if n <= 2 * BLOCK {
-            (0..n).filter_map(of).collect()
-        } else {
-            (0..n).into_par_iter().with_min_len(BLOCK).filter_map(of).collect()
-        }
+        self.in_windows().all_faults(legs)
+    }
+
+    /// This checker, for those who ask of many segments and come back to the same ones.
+    #[must_use]
+    pub fn in_windows(&self) -> WindowChecker<'_, 'a> {
+        WindowChecker::new(self)
     }
 
     /// The record of one criterion on a segment: verdict, margin and place.

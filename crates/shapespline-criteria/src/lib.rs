@@ -41,6 +41,7 @@ mod notes;
 mod polygon_shape;
 mod report;
 mod stretch;
+mod window;
 
 pub use calls::{Calls, separation};
 pub use checker::{Checker, check};
@@ -55,6 +56,7 @@ pub use notes::{NodeCondition, NodeRecord, Notes, Oscillation};
 pub use polygon_shape::{Extent, PolygonShape, polygon_shape};
 pub use report::{Count, Record, ShapeReport, Undecided};
 pub use stretch::{StretchCalls, StretchChecker};
+pub use window::WindowChecker;
 
 /// The examples of the README are run as tests.
 #[cfg(doctest)]

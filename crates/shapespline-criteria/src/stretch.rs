@@ -1,10 +1,14 @@
 //! The checker of one stretch of a polygon after another, for methods that are local.
 
-use shapespline_geometry::{DataPolygon, Lanes, Stretch};
+use std::ops::Range;
+
+use rayon::prelude::*;
+use shapespline_geometry::{DVec3, DataPolygon, Lanes, Stretch};
 
 use crate::{
     Calls, Criteria, Faults, Tolerances,
     faults::{Cones, Situation, doubtful, faults},
+    window::{BLOCK, Window, parts},
 };
 
 /// The shape criteria of a polygon, asked stretch by stretch: to the bit what a
@@ -43,36 +47,87 @@ impl<'a> StretchChecker<'a> {
         &self,
         stretch: &Stretch,
         calls: &StretchCalls,
-        [first, last]: [&Lanes; 2],
+        legs: [&Lanes; 2],
         found: &mut Vec<(usize, Faults)>,
     ) {
-        let (chords, binormals) = (stretch.chords(), stretch.binormals());
-        // Where sizes are not ordinary every segment is decided by itself.
-        let mut doubts = [1; Stretch::ROOM];
-        let mut any = 1;
-        if stretch.is_ordinary() {
-            any = 0;
-            for j in 0..stretch.less(2 * Stretch::BESIDE) {
-                let legs = [first.get(j + 2), last.get(j + 2)];
-                let [p, q] = [binormals.get(j + 1), binormals.get(j + 2)];
-                let s = Situation::of_scaled(legs, chords.get(j + 2), p, q);
-                doubts[j + 2] = doubtful(&s, calls[j + 2].bits());
-                any |= doubts[j + 2];
+        let places = stretch.own();
+        faults_of_stretch(self.polygon, &self.tolerances, stretch, calls, legs, places, found);
+    }
+
+    /// The segments that fail, ascending, and how many segments each criterion applies to: all that a
+    /// report on a curve without faults says. Cost O(N), on all threads for long curves.
+    pub fn look<L>(&self, legs: L) -> (Vec<(usize, Faults)>, [usize; 6])
+    where
+        L: Fn(usize) -> [DVec3; 2] + Sync,
+    {
+        let Self { polygon, ref tolerances, .. } = *self;
+        let look = |window: &mut Window, segments: Range<usize>| {
+            let (mut found, mut applicable) = (Vec::new(), [0; 6]);
+            for part in parts(segments) {
+                window.load(polygon, part.start / Stretch::OWN);
+                self.calls(&window.stretch, &mut window.calls);
+                add(&mut applicable, Self::applicable(&window.stretch, &window.calls));
+                window.faults(polygon, tolerances, part, &legs, &mut found);
             }
+            (found, applicable)
+        };
+        let n = polygon.segments();
+        if n < 2 * BLOCK {
+            return look(&mut Window::default(), 0..n);
         }
-        if any == 0 {
-            return;
+        let block = |window: &mut Window, k: usize| look(window, k * BLOCK..n.min((k + 1) * BLOCK));
+        let blocks = (0..n.div_ceil(BLOCK)).into_par_iter().map_init(Window::default, block);
+        let nothing = || (Vec::new(), [0; 6]);
+        blocks.reduce(nothing, |(mut found, mut applicable), after| {
+            found.extend(after.0);
+            add(&mut applicable, after.1);
+            (found, applicable)
+        })
+    }
+}
+
+/// Adds counts to others.
+fn add(sums: &mut [usize; 6], counts: [usize; 6]) {
+    sums.iter_mut().zip(counts).for_each(|(sum, count)| *sum += count);
+}
+
+/// Adds the segments at some of a stretch's own places that fail with the end legs `first, last`.
+pub(crate) fn faults_of_stretch(
+    polygon: &DataPolygon,
+    tolerances: &Tolerances,
+    stretch: &Stretch,
+    calls: &StretchCalls,
+    [first, last]: [&Lanes; 2],
+    places: Range<usize>,
+    found: &mut Vec<(usize, Faults)>,
+) {
+    let (chords, binormals) = (stretch.chords(), stretch.binormals());
+    // Where sizes are not ordinary every segment is decided by itself.
+    let mut doubts = [1; Stretch::ROOM];
+    let mut any = 1;
+    if stretch.is_ordinary() {
+        any = 0;
+        let end = places.end.min(stretch.less(Stretch::BESIDE));
+        for j in places.start - Stretch::BESIDE..end - Stretch::BESIDE {
+            let legs = [first.get(j + 2), last.get(j + 2)];
+            let [p, q] = [binormals.get(j + 1), binormals.get(j + 2)];
+            let s = Situation::of_scaled(legs, chords.get(j + 2), p, q);
+            doubts[j + 2] = doubtful(&s, calls[j + 2].bits());
+            any |= doubts[j + 2];
         }
-        for j in stretch.own().filter(|&j| doubts[j] != 0) {
-            let around = [j - 1, j, j + 1].map(|j| stretch.directions().get(j));
-            let legs = [first.get(j), last.get(j)];
-            let s = Situation::new(legs, chords.get(j), binormals.get(j - 1), binormals.get(j));
-            let i = stretch.segment(self.polygon, j);
-            let cones = || Cones::new(self.polygon, i, around, calls[j], &self.tolerances);
-            let faults = faults(&s, calls[j], cones);
-            if !faults.is_empty() {
-                found.push((i, faults));
-            }
+    }
+    if any == 0 {
+        return;
+    }
+    for j in places.filter(|&j| doubts[j] != 0) {
+        let around = [j - 1, j, j + 1].map(|j| stretch.directions().get(j));
+        let legs = [first.get(j), last.get(j)];
+        let s = Situation::new(legs, chords.get(j), binormals.get(j - 1), binormals.get(j));
+        let i = stretch.segment(polygon, j);
+        let cones = || Cones::new(polygon, i, around, calls[j], tolerances);
+        let faults = faults(&s, calls[j], cones);
+        if !faults.is_empty() {
+            found.push((i, faults));
         }
     }
 }
@@ -80,7 +135,7 @@ impl<'a> StretchChecker<'a> {
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used)]
-    use shapespline_geometry::{Boundary, DVec3, Parametrization};
+    use shapespline_geometry::{Boundary, Parametrization};
 
     use super::*;
     use crate::{Checker, Criterion};
@@ -131,7 +186,10 @@ mod tests {
                 }
                 let mut faults = Vec::new();
                 local.faults(&stretch, &calls, [&first, &last], &mut faults);
+                let alone = (0..n).map(|i| (i, checker.faults(i, legs(i))));
+                assert!(alone.filter(|fault| !fault.1.is_empty()).eq(faults.iter().copied()));
                 assert_eq!(faults, checker.all_faults(legs));
+                assert_eq!((faults.clone(), checker.applicable(0..n)), local.look(legs));
                 failed = faults.iter().fold(failed, |all, &(_, faults)| all.and(faults));
             }
         }

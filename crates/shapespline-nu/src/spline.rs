@@ -78,11 +78,9 @@ impl NuSpline {
         options: &SearchOptions,
         monitor: &mut dyn FnMut(&Step) -> ControlFlow<()>,
     ) -> Result<Fit<Self>, FitError> {
-        let checker = options.checker(&polygon)?;
         let tension = vec![0.0; polygon.nodes()];
         let mut family = SolvedFamily::new(NuSystem { polygon: &polygon, tension })?;
-        let (outcome, report) = search_and_report(&mut family, &checker, options, monitor)?;
-        drop(checker);
+        let (outcome, report) = search_and_report(&mut family, &polygon, options, monitor)?;
         let (legs, NuSystem { tension, .. }) = family.finish();
         let curve = Self::assemble(polygon, legs, tension)?;
         Ok(Fit { curve, outcome, report })

@@ -10,7 +10,10 @@ use pyo3::{
     prelude::*,
     types::{IntoPyDict, PyFloat, PyInt, PyString},
 };
+use rayon::prelude::*;
 use shapespline::geometry::{DVec3, Dimension};
+
+use crate::work::detached;
 
 /// An array of f64 in C order: the caller's own where it is that already, else a copy.
 pub(crate) struct Array<'py>(PyReadonlyArrayDyn<'py, f64>);
@@ -94,6 +97,16 @@ pub(crate) fn finite(argument: &str, array: &Array<'_>) -> PyResult<()> {
     Err(PyValueError::new_err(format!("{argument}[{index}] must be finite, got {value}")))
 }
 
+/// `make(0), …, make(count − 1)`, on all threads where there are many: of a large copy the first touch of
+/// its memory takes longest.
+fn made<T: Send>(py: Python<'_>, count: usize, make: impl Fn(usize) -> T + Sync + Send) -> Vec<T> {
+    const MANY: usize = 32_768;
+    if count < 2 * MANY {
+        return (0..count).map(make).collect();
+    }
+    detached(py, count, || (0..count).into_par_iter().with_min_len(MANY).map(make).collect())
+}
+
 /// Points: `(n, 2)` or `(n, 3)`.
 pub(crate) struct Points {
     pub(crate) points: Vec<DVec3>,
@@ -105,14 +118,14 @@ impl<'py> FromPyObject<'_, 'py> for Points {
 
     fn extract(object: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
         let array = array("points", &object)?;
-        let values = array.values();
+        let (py, values) = (object.py(), array.values());
         match array.shape() {
-            [_, 3] => Ok(Self {
-                points: values.chunks_exact(3).map(DVec3::from_slice).collect(),
+            &[count, 3] => Ok(Self {
+                points: made(py, count, |i| DVec3::from_slice(&values[3 * i..3 * i + 3])),
                 dimension: Dimension::Three,
             }),
-            [_, 2] => Ok(Self {
-                points: values.chunks_exact(2).map(|p| DVec3::new(p[0], p[1], 0.0)).collect(),
+            &[count, 2] => Ok(Self {
+                points: made(py, count, |i| DVec3::new(values[2 * i], values[2 * i + 1], 0.0)),
                 dimension: Dimension::Two,
             }),
             _ => Err(PyValueError::new_err(format!(

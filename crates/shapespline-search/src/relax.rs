@@ -26,33 +26,61 @@ const SWEEPS: usize = 256;
 
 /// Lowers the tension of a curve without faults as far as that leaves it without faults.
 pub(crate) fn relax<F: TensionFamily>(state: &mut State<'_, '_, F>) -> Result<(), F::Error> {
+    let mut all = runs(state.family.tension(), state.closed());
+    // Those that may be lowered: a run that was, is open again once another within reach has changed.
+    let mut open = vec![true; all.len()];
     for sweep in 0..SWEEPS {
-        let all = runs(state.family.tension(), state.closed());
-        let mut open = vec![true; all.len()];
         if sweep > 0 {
             for (open, run) in open.iter_mut().zip(&all) {
-                *open = !state.stopped && can_be_lowered(state, run)?;
+                *open = *open && !state.stopped && can_be_lowered(state, run)?;
             }
         }
-        let mut heaviest_first: Vec<usize> = (0..all.len()).filter(|&r| open[r]).collect();
-        heaviest_first.sort_by(|&a, &b| all[b].total.total_cmp(&all[a].total));
-        let mut changed = 0;
-        for r in heaviest_first {
-            if !open[r] {
-                continue;
-            }
-            let group = tied(state, &all, &mut open, r);
-            changed += lower(state, &group)?;
-            if state.wants_to_stop(Phase::Relax, changed) {
-                break;
-            }
-        }
+        let changed = sweep_over(state, &all, &mut open)?;
         state.log(Phase::Relax, 0, changed);
         if changed == 0 || state.stopped {
             break;
         }
+        let tension = state.family.tension();
+        for run in &mut all {
+            run.total = run.nodes(tension.len()).map(|i| tension[i]).sum();
+        }
+        open = all.iter().zip(open).filter(|(run, _)| run.total > 0.0).map(|(_, o)| o).collect();
+        all.retain(|run| run.total > 0.0);
     }
     Ok(())
+}
+
+/// Lowers the open runs, the heaviest first, and says which are open then. Returns the number of nodes
+/// that changed.
+fn sweep_over<F: TensionFamily>(
+    state: &mut State<'_, '_, F>,
+    all: &[Run],
+    open: &mut [bool],
+) -> Result<usize, F::Error> {
+    let mut heaviest_first: Vec<usize> = (0..all.len()).filter(|&r| open[r]).collect();
+    heaviest_first.sort_by(|&a, &b| all[b].total.total_cmp(&all[a].total));
+    let mut again = vec![false; all.len()];
+    let mut changed = 0;
+    for r in heaviest_first {
+        if !open[r] {
+            continue;
+        }
+        let group = tied(state, all, open, r);
+        let nodes = group.iter().flat_map(|&g| nodes_of(state, &all[g])).collect();
+        let lowered = lower(state, &nodes, group.len() == all.len())?;
+        // Of several with one factor, one may have held back the others.
+        group.iter().for_each(|&g| again[g] = lowered > 0 && group.len() > 1);
+        if lowered > 0 {
+            let beside = group.iter().flat_map(|&g| neighbours(state, all, g));
+            beside.filter(|o| !group.contains(o)).for_each(|o| again[o] = true);
+        }
+        changed += lowered;
+        if state.wants_to_stop(Phase::Relax, changed) {
+            break;
+        }
+    }
+    open.copy_from_slice(&again);
+    Ok(changed)
 }
 
 /// Nodes of runs, with the tension they have.
@@ -63,14 +91,14 @@ fn nodes_of<F: TensionFamily>(state: &State<'_, '_, F>, run: &Run) -> Nodes {
     run.nodes(tension.len()).map(|i| (i, tension[i])).collect()
 }
 
-/// The nodes of run `r` and of the open runs that tie with it within reach, or within reach of those;
-/// they are open no longer.
+/// Run `r` and the open runs that tie with it within reach, or within reach of those; they are open no
+/// longer.
 fn tied<F: TensionFamily>(
     state: &State<'_, '_, F>,
     all: &[Run],
     open: &mut [bool],
     r: usize,
-) -> Nodes {
+) -> Vec<usize> {
     open[r] = false;
     let mut group = vec![r];
     let mut next = 0;
@@ -86,7 +114,7 @@ fn tied<F: TensionFamily>(
         }
         next += 1;
     }
-    group.into_iter().flat_map(|g| nodes_of(state, &all[g])).collect()
+    group
 }
 
 /// Nodes between two runs, the shorter way round in closed data.
@@ -126,10 +154,17 @@ fn neighbours<'a, F: TensionFamily>(
 }
 
 /// Lowers nodes by a common factor, found by bisection. Returns the number of nodes that changed.
-fn lower<F: TensionFamily>(state: &mut State<'_, '_, F>, nodes: &Nodes) -> Result<usize, F::Error> {
+///
+/// `all`: whether no other node has tension.
+fn lower<F: TensionFamily>(
+    state: &mut State<'_, '_, F>,
+    nodes: &Nodes,
+    all: bool,
+) -> Result<usize, F::Error> {
     state.relaxations += 1;
-    // No tension at all comes first: growth often raises more nodes than it had to.
-    if keeps_shape(state, nodes, 0.0)? {
+    // No tension at all comes first: growth often raises more nodes than it had to. Without any
+    // anywhere the curve has faults, or none would have been raised.
+    if !all && keeps_shape(state, nodes, 0.0)? {
         return Ok(nodes.len());
     }
     let (mut breaks, mut keeps) = (0.0, 1.0);
@@ -186,11 +221,9 @@ fn scaled<F: TensionFamily>(
     factor: f64,
 ) -> Vec<(usize, f64)> {
     let present = state.family.tension();
-    let mut changes: Vec<(usize, f64)> = nodes
-        .iter()
-        .map(|&(i, tension)| (i, tension * factor))
-        .filter(|&(i, tension)| present[i] != tension)
-        .collect();
+    let mut changes = Vec::with_capacity(nodes.len());
+    let scaled = nodes.iter().map(|&(i, tension)| (i, tension * factor));
+    changes.extend(scaled.filter(|&(i, tension)| present[i] != tension));
     changes.sort_unstable_by_key(|c| c.0);
     changes
 }

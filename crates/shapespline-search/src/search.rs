@@ -3,7 +3,8 @@
 use std::ops::{ControlFlow, Range};
 
 use rayon::prelude::*;
-use shapespline_criteria::{Checker, Faults, ShapeReport};
+use shapespline_criteria::{Checker, Faults, ShapeReport, StretchChecker, WindowChecker};
+use shapespline_geometry::DataPolygon;
 
 use crate::{
     Diagnostics, FitError, Outcome, Pattern, Phase, SearchOptions, Status, Step, Strategy,
@@ -26,7 +27,47 @@ pub fn search<F: TensionFamily>(
     options: &SearchOptions,
     monitor: &mut dyn FnMut(&Step) -> ControlFlow<()>,
 ) -> Result<Outcome, F::Error> {
-    let mut state = State::new(family, checker, monitor);
+    let faults = checker.all_faults(|i| family.end_legs(i));
+    search_from(faults, family, checker, options, monitor)
+}
+
+/// [`search`] on the polygon of a family, and the report on the curve that results.
+///
+/// # Errors
+/// Options outside their range; those of the family's solver.
+pub fn search_and_report<F>(
+    family: &mut F,
+    polygon: &DataPolygon,
+    options: &SearchOptions,
+    monitor: &mut dyn FnMut(&Step) -> ControlFlow<()>,
+) -> Result<(Outcome, ShapeReport), FitError>
+where
+    F: TensionFamily,
+    FitError: From<F::Error>,
+{
+    // Most curves need no tension: those are looked at once, and nothing is kept of it.
+    options.validate()?;
+    let first = StretchChecker::new(polygon, options.criteria, options.tolerances);
+    let (faults, applicable) = first.look(|i| family.end_legs(i));
+    if faults.is_empty() {
+        let report = ShapeReport::clean(polygon.segments(), options.criteria, applicable);
+        return Ok((Outcome::solved(), report));
+    }
+    let checker = options.checker(polygon)?;
+    let outcome = search_from(faults, family, &checker, options, monitor)?;
+    let report = checker.report_of(&outcome.faults, |i| family.end_legs(i));
+    Ok((outcome, report))
+}
+
+/// [`search`], the faults of the curve as it is being known.
+fn search_from<F: TensionFamily>(
+    faults: Vec<(usize, Faults)>,
+    family: &mut F,
+    checker: &Checker<'_>,
+    options: &SearchOptions,
+    monitor: &mut dyn FnMut(&Step) -> ControlFlow<()>,
+) -> Result<Outcome, F::Error> {
+    let mut state = State::new(faults, family, checker, monitor);
     let mut status = state.raise(options)?;
     if status == Status::Solved && !state.untouched() {
         if options.strategy == Strategy::Fairest {
@@ -44,29 +85,12 @@ pub fn search<F: TensionFamily>(
     Ok(state.outcome(status))
 }
 
-/// [`search`], and the report on the curve that results.
-///
-/// # Errors
-/// Those of the family's solver.
-pub fn search_and_report<F>(
-    family: &mut F,
-    checker: &Checker<'_>,
-    options: &SearchOptions,
-    monitor: &mut dyn FnMut(&Step) -> ControlFlow<()>,
-) -> Result<(Outcome, ShapeReport), FitError>
-where
-    F: TensionFamily,
-    FitError: From<F::Error>,
-{
-    let outcome = search(family, checker, options, monitor)?;
-    let report = checker.report_of(&outcome.faults, |i| family.end_legs(i));
-    Ok((outcome, report))
-}
-
 /// The family, the checker, and what is known to fail.
 pub(crate) struct State<'s, 'p, F> {
     pub(crate) family: &'s mut F,
     checker: &'s Checker<'p>,
+    /// The same, for a few segments at a time.
+    windows: WindowChecker<'s, 'p>,
     monitor: &'s mut dyn FnMut(&Step) -> ControlFlow<()>,
     /// Segments that fail, ascending.
     faults: Vec<(usize, Faults)>,
@@ -86,14 +110,15 @@ pub(crate) struct State<'s, 'p, F> {
 
 impl<'s, 'p, F: TensionFamily> State<'s, 'p, F> {
     fn new(
+        faults: Vec<(usize, Faults)>,
         family: &'s mut F,
         checker: &'s Checker<'p>,
         monitor: &'s mut dyn FnMut(&Step) -> ControlFlow<()>,
     ) -> Self {
-        let faults = checker.all_faults(|i| family.end_legs(i));
         Self {
             family,
             checker,
+            windows: checker.in_windows(),
             monitor,
             faults,
             touched: Vec::new(),
@@ -153,7 +178,7 @@ impl<'s, 'p, F: TensionFamily> State<'s, 'p, F> {
         self.family.solve_again()?;
         self.solves += 1;
         let family = &*self.family;
-        self.faults = self.checker.all_faults(|i| family.end_legs(i));
+        self.faults = self.windows.all_faults(|i| family.end_legs(i));
         Ok(())
     }
 
@@ -169,7 +194,7 @@ impl<'s, 'p, F: TensionFamily> State<'s, 'p, F> {
                 (at + offset).checked_sub(1).filter(|&i| i < n)
             }
         };
-        let mut changes = Vec::new();
+        let mut changes = Vec::with_capacity(4 * self.faults.len());
         let mut equal = Vec::new();
         for &(segment, faults) in &self.faults {
             let pattern = Pattern::of(faults);
@@ -208,15 +233,20 @@ impl<'s, 'p, F: TensionFamily> State<'s, 'p, F> {
         });
         let untouched = self.faults.len();
         let (family, checker) = (&*self.family, self.checker);
-        let check = |range: &Range<usize>| {
-            let fault = |i| (i, checker.faults(i, family.end_legs(i)));
-            range.clone().map(fault).filter(|(_, faults)| !faults.is_empty()).collect::<Vec<_>>()
-        };
+        let legs = |i| family.end_legs(i);
         if touched.len() < MANY {
-            self.faults.extend(touched.iter().flat_map(check));
+            for range in touched {
+                self.windows.faults(range.clone(), legs, &mut self.faults);
+            }
         } else {
+            let check = |windows: &mut WindowChecker<'_, '_>, range: &Range<usize>| {
+                let mut found = Vec::new();
+                windows.faults(range.clone(), legs, &mut found);
+                found
+            };
+            let ranges = touched.par_iter().with_min_len(MANY / 4);
             let found: Vec<_> =
-                touched.par_iter().with_min_len(MANY / 4).flat_map_iter(check).collect();
+                ranges.map_init(|| checker.in_windows(), check).flatten_iter().collect();
             self.faults.extend(found);
         }
         if untouched > 0 {
@@ -229,12 +259,14 @@ impl<'s, 'p, F: TensionFamily> State<'s, 'p, F> {
     /// leaves it to the next solve to look at the rest.
     pub(crate) fn try_tension(&mut self, changes: &[(usize, f64)]) -> Result<bool, F::Error> {
         self.solve(changes)?;
-        let (family, checker) = (&*self.family, self.checker);
-        let fails = |i: &usize| !checker.faults(*i, family.end_legs(*i)).is_empty();
+        let (family, windows) = (&*self.family, &mut self.windows);
+        let legs = |i| family.end_legs(i);
         let known = self.suspect;
-        let suspect = self.touched.iter().any(|r| r.contains(&known)).then_some(known);
-        let all = suspect.into_iter().chain(self.touched.iter().flat_map(Range::clone));
-        let fault = all.into_iter().find(fails);
+        let suspect = self.touched.iter().any(|r| r.contains(&known)).then_some(known..known + 1);
+        let fault = suspect
+            .into_iter()
+            .chain(self.touched.iter().cloned())
+            .find_map(|range| windows.any_fault(range, legs));
         if let Some(segment) = fault {
             self.suspect = segment;
             std::mem::swap(&mut self.unchecked, &mut self.touched);

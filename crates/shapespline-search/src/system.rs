@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use rayon::prelude::*;
-use shapespline_banded::{Resolvable, Rows, SolveError, solve_once};
+use shapespline_banded::{Resolvable, Row, Rows, SolveError, solve_once};
 use shapespline_geometry::{DVec3, DataPolygon};
 
 use crate::TensionFamily;
@@ -61,10 +61,38 @@ fn legs_of<S: TensionSystem>(system: &S, tangents: &[DVec3], segment: usize) -> 
     system.legs(segment, [tangents[segment], tangents[next]])
 }
 
+/// Rows that are kept: those of short curves, whose search comes back to them again and again.
+const KEPT: usize = 2048;
+
+/// A system whose first rows are kept as they were made.
+struct Kept<'s, S> {
+    system: &'s S,
+    rows: &'s [Row],
+}
+
+impl<S: Rows> Rows for Kept<'_, S> {
+    fn count(&self) -> usize {
+        self.system.count()
+    }
+
+    fn is_cyclic(&self) -> bool {
+        self.system.is_cyclic()
+    }
+
+    #[inline]
+    fn row(&self, i: usize) -> Row {
+        match self.rows.get(i) {
+            Some(row) => *row,
+            None => self.system.row(i),
+        }
+    }
+}
+
 /// A system with its solution, brought up to date where tension changes.
 #[derive(Debug)]
 pub struct SolvedFamily<S> {
     system: S,
+    kept: Vec<Row>,
     solver: Resolvable,
     /// Scratch: the rows an update changes, and the unknowns it touches.
     rows: Vec<usize>,
@@ -77,8 +105,9 @@ impl<S: TensionSystem> SolvedFamily<S> {
     /// # Errors
     /// A system that f64 cannot hold.
     pub fn new(system: S) -> Result<Self, SolveError> {
-        let solver = Resolvable::new(&system)?;
-        Ok(Self { system, solver, rows: Vec::new(), unknowns: Vec::new() })
+        let kept: Vec<Row> = (0..system.count().min(KEPT)).map(|i| system.row(i)).collect();
+        let solver = Resolvable::new(&Kept { system: &system, rows: &kept })?;
+        Ok(Self { system, kept, solver, rows: Vec::new(), unknowns: Vec::new() })
     }
 
     /// End legs of every segment, and the system.
@@ -119,8 +148,14 @@ impl<S: TensionSystem> TensionFamily for SolvedFamily<S> {
         }
         self.rows.sort_unstable();
         self.rows.dedup();
+        for &i in &self.rows {
+            if let Some(row) = self.kept.get_mut(i) {
+                *row = self.system.row(i);
+            }
+        }
         self.unknowns.clear();
-        self.solver.update(&self.system, &self.rows, &mut self.unknowns)?;
+        let system = Kept { system: &self.system, rows: &self.kept };
+        self.solver.update(&system, &self.rows, &mut self.unknowns)?;
         for nodes in &self.unknowns {
             self.touch(nodes.clone(), touched);
         }

@@ -134,11 +134,9 @@ impl TensionSpline {
         options: &SearchOptions,
         monitor: &mut dyn FnMut(&Step) -> ControlFlow<()>,
     ) -> Result<Fit<Self>, FitError> {
-        let checker = options.checker(&polygon)?;
         let none = vec![[1.0; 2]; polygon.segments()];
         let mut family = SolvedFamily::new(MannisSystem::new(&polygon, none))?;
-        let (outcome, report) = search_and_report(&mut family, &checker, options, monitor)?;
-        drop(checker);
+        let (outcome, report) = search_and_report(&mut family, &polygon, options, monitor)?;
         let (legs, system) = family.finish();
         let (slopes, tension) = system.into_parts();
         let curve = Self::assemble(polygon, legs, slopes, tension)?;
