@@ -69,7 +69,7 @@ fn sweep_over<F: TensionFamily>(
         let nodes = group.iter().flat_map(|&g| nodes_of(state, &all[g])).collect();
         let lowered = lower(state, &nodes, group.len() == all.len())?;
         // Of several with one factor, one may have held back the others.
-        group.iter().for_each(|&g| again[g] = lowered > 0 && group.len() > 1);
+        group.iter().for_each(|&g| again[g] = group.len() > 1);
         if lowered > 0 {
             let beside = group.iter().flat_map(|&g| neighbours(state, all, g));
             beside.filter(|o| !group.contains(o)).for_each(|o| again[o] = true);
