@@ -41,6 +41,7 @@ mod error;
 mod evaluate;
 mod extrapolation;
 mod integrals;
+mod interrupt;
 mod inverse;
 mod locate;
 mod many;

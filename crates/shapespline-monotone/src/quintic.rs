@@ -4,6 +4,7 @@ use crate::MonotoneError;
 use crate::data::{Data, check_finite, first, parts};
 use crate::energy::{self, Fairness, is_flat};
 use crate::extrapolation::Extrapolation;
+use crate::interrupt::{GoOn, ask};
 use crate::optimal::coefficients;
 use crate::program::admissible_slopes;
 use crate::quartic_form::certified_nonnegative;
@@ -123,10 +124,13 @@ impl MonotoneQuintic {
         go_on: &(dyn Fn() -> ControlFlow<()> + Sync),
     ) -> Result<Self, MonotoneError> {
         let data = Data::new(x, y)?;
+        ask(go_on)?;
         data.check_curvature(y)?;
         let fairness = options.fairness;
         let (d, s, mut diagnostics) = match &options.slopes {
-            Slopes::FritschButland => paper(&data, slopes::fritsch_butland(&data), fairness)?,
+            Slopes::FritschButland => {
+                paper(&data, slopes::fritsch_butland(&data), fairness, go_on)?
+            }
             Slopes::Given(given) => {
                 if given.len() != x.len() {
                     return Err(MonotoneError::Length {
@@ -136,10 +140,11 @@ impl MonotoneQuintic {
                     });
                 }
                 check_finite("slopes", given)?;
-                paper(&data, slopes::limited(&data, given), fairness)?
+                paper(&data, slopes::limited(&data, given), fairness, go_on)?
             }
             Slopes::Optimal => fairest(&data, fairness, go_on)?,
         };
+        ask(go_on)?;
         let units = data.units();
         let bending = energy::total(&data, Fairness::Bending, &d, &s);
         let bending_energy = units.energy_out(Fairness::Bending, bending);
@@ -149,8 +154,10 @@ impl MonotoneQuintic {
                 units.energy_out(fairness, energy::total(&data, fairness, &d, &s))
             }
         };
+        ask(go_on)?;
         diagnostics.certified = certified(&data, &d, &s);
         drop(data);
+        ask(go_on)?;
         let spline =
             MonotoneSpline::quintic(units, x.to_vec(), y.to_vec(), d, s, options.extrapolate);
         // A second derivative beyond double precision: refuse rather than hand out infinities.
@@ -215,9 +222,15 @@ impl MonotoneQuintic {
 type Fit = (Vec<f64>, Vec<f64>, Diagnostics);
 
 /// The paper's program for given slopes.
-fn paper(data: &Data, mut d: Vec<f64>, fairness: Fairness) -> Result<Fit, MonotoneError> {
+fn paper(
+    data: &Data,
+    mut d: Vec<f64>,
+    fairness: Fairness,
+    go_on: GoOn<'_>,
+) -> Result<Fit, MonotoneError> {
+    ask(go_on)?;
     admissible_slopes(data, &mut d);
-    let solution = stretches::solve(data, &d, fairness)?;
+    let solution = stretches::solve(data, &d, fairness, go_on)?;
     let diagnostics = Diagnostics {
         solver: Solver::ActiveSet,
         iterations: solution.iterations,
@@ -231,11 +244,7 @@ fn paper(data: &Data, mut d: Vec<f64>, fairness: Fairness) -> Result<Fit, Monoto
 }
 
 /// Slopes and second derivatives together; the paper's program when that should be better or certifiable only.
-fn fairest(
-    data: &Data,
-    fairness: Fairness,
-    go_on: windows::GoOn<'_>,
-) -> Result<Fit, MonotoneError> {
+fn fairest(data: &Data, fairness: Fairness, go_on: GoOn<'_>) -> Result<Fit, MonotoneError> {
     let Some(best) = windows::optimise(data, fairness, go_on) else {
         return Err(MonotoneError::Interrupted);
     };
@@ -244,7 +253,7 @@ fn fairest(
     // The exact optimum (found in one step, or of two points) is below the paper's result by construction; one to
     // within its gap has to be compared.
     if !(finite && best.gap == 0.0) {
-        let fallback = paper(data, slopes::fritsch_butland(data), fairness)?;
+        let fallback = paper(data, slopes::fritsch_butland(data), fairness, go_on)?;
         let other = energy::total(data, fairness, &fallback.0, &fallback.1);
         if !finite || !(energy <= other) {
             return Ok(fallback);

@@ -9,6 +9,7 @@
 use crate::MonotoneError;
 use crate::data::Data;
 use crate::energy::Fairness;
+use crate::interrupt::{GoOn, ask};
 use crate::program::Program;
 use rayon::prelude::*;
 use shapespline_banded::box_qp::BoxQpSolution;
@@ -24,13 +25,14 @@ const SHARED: usize = 16;
 /// promised by far.
 const AGREE: f64 = 1e-13;
 
-/// Solve the program for given slopes. O(N), in parallel.
+/// Solve the program for given slopes, asking once a stretch whether to go on. O(N), in parallel.
 pub(crate) fn solve(
     data: &Data,
     d: &[f64],
     fairness: Fairness,
+    go_on: GoOn<'_>,
 ) -> Result<BoxQpSolution, MonotoneError> {
-    solve_by(data, d, fairness, CORE, OVERLAP)
+    solve_by(data, d, fairness, go_on, [CORE, OVERLAP])
 }
 
 /// A stretch's answer.
@@ -47,8 +49,8 @@ fn solve_by(
     data: &Data,
     d: &[f64],
     fairness: Fairness,
-    core: usize,
-    overlap: usize,
+    go_on: GoOn<'_>,
+    [core, overlap]: [usize; 2],
 ) -> Result<BoxQpSolution, MonotoneError> {
     let nodes = d.len();
     let count = nodes / core;
@@ -57,6 +59,7 @@ fn solve_by(
     }
     let cut = |k: usize| nodes * k / count;
     let stretch = |program: &mut Program, k: usize| -> Result<Stretch, MonotoneError> {
+        ask(go_on)?;
         let nodes = cut(k)..cut(k + 1);
         let from = nodes.start.saturating_sub(overlap);
         let to = (nodes.end + overlap).min(d.len());
@@ -117,6 +120,9 @@ mod tests {
     use crate::program::admissible_slopes;
     use crate::slopes;
     use shapespline_banded::box_qp::kkt_residual;
+    use std::ops::ControlFlow;
+
+    const GO_ON: GoOn<'static> = &|| ControlFlow::Continue(());
 
     /// Stretches against one program over all data, with turns, flats and steps over decades.
     #[test]
@@ -141,7 +147,7 @@ mod tests {
             for fairness in [Fairness::Bending, Fairness::Parametric] {
                 let program = Program::new(&data, &d, fairness).unwrap();
                 let whole = program.solve().unwrap();
-                let parts = solve_by(&data, &d, fairness, 100, OVERLAP).unwrap();
+                let parts = solve_by(&data, &d, fairness, GO_ON, [100, OVERLAP]).unwrap();
                 assert!(parts.solved && parts.x.len() == d.len());
                 assert!(kkt_residual(&program.view(), &parts.x) <= parts.kkt_residual.max(2e-13));
                 let mut active = 0;
@@ -169,7 +175,7 @@ mod tests {
         let data = Data::new(&x, &y).unwrap();
         let d = slopes::fritsch_butland(&data);
         let whole = Program::new(&data, &d, Fairness::Bending).unwrap().solve().unwrap();
-        let parts = solve_by(&data, &d, Fairness::Bending, 50, 1).unwrap();
+        let parts = solve_by(&data, &d, Fairness::Bending, GO_ON, [50, 1]).unwrap();
         assert_eq!(parts, whole);
     }
 }

@@ -9,10 +9,11 @@
 
 use crate::data::Data;
 use crate::energy::{Fairness, is_flat};
+use crate::interrupt::GoOn;
 use crate::optimal::{self, Optimum, coefficients};
 use crate::quartic_form::certified_nonnegative;
 use rayon::prelude::*;
-use std::ops::{ControlFlow, Range};
+use std::ops::Range;
 
 /// Nodes a window answers for, and nodes it looks beyond on either side: what is beyond counts less than 4⁻⁶.
 const CORE: usize = 64;
@@ -36,9 +37,6 @@ struct Window {
     segments: Range<usize>,
     optimum: Optimum,
 }
-
-/// A question whether to go on, asked from any thread.
-pub(crate) type GoOn<'a> = &'a (dyn Fn() -> ControlFlow<()> + Sync);
 
 /// Slopes and second derivatives of least energy; none where the question whether to go on, asked once a window,
 /// was answered with no. O(N), in parallel.
@@ -184,7 +182,7 @@ mod tests {
             }
             let data = Data::new(&x, &y).unwrap();
             let total = |o: &Optimum| energy::total(&data, Fairness::Bending, &o.d, &o.s);
-            let go_on: GoOn<'_> = &|| ControlFlow::Continue(());
+            let go_on: GoOn<'_> = &|| std::ops::ControlFlow::Continue(());
             let whole = optimal::optimise(&data, Fairness::Bending);
             let parts = optimise(&data, Fairness::Bending, go_on).unwrap();
             let ratio = total(&parts) / total(&whole);
