@@ -234,7 +234,6 @@ mod tests {
     use super::*;
     use crate::{Boundary, Parametrization};
 
-    /// To the bit what the polygon says, at every size, around closed ones and at open ends.
     /// Every coordinate of every place asked for counts, and no other.
     #[test]
     fn vectors_without_room_are_seen() {
@@ -254,6 +253,7 @@ mod tests {
         }
     }
 
+    /// To the bit what the polygon says, at every size, around closed ones and at open ends.
     #[test]
     fn a_stretch_is_what_the_polygon_says() {
         let mut stretch = Stretch::default();
