@@ -11,7 +11,7 @@ use crate::{
 /// in the last row. O(n) time, and O(n) memory for the column that fills in.
 ///
 /// The last unknown is set aside: the rest is a tridiagonal system with two right-hand sides, the
-/// given one and the last column.
+/// given one and the last column. Shares below 2e−308 have fewer digits, as there.
 ///
 /// # Errors
 /// As [`solve_tridiagonal`].
@@ -70,6 +70,20 @@ mod tests {
             for (found, planted) in right.iter().zip(&x) {
                 prop_assert!((found - planted).abs() < 1e-11);
             }
+        }
+    }
+
+    /// What a row hands on is `−1e−30` of its own: all digits of it, down to 1e−300.
+    #[test]
+    fn shares_keep_their_digits_down_to_the_least_normal_number() {
+        let n = 11;
+        let (lower, upper) = (vec![1e-30; n], vec![0.0; n]);
+        let mut right = vec![0.0; n];
+        right[n - 1] = 1.0;
+        solve_cyclic(&lower, &mut vec![1.0; n], &upper, &mut right).unwrap();
+        for (i, x) in right[..n - 1].iter().enumerate() {
+            let planted = (-1e-30f64).powi(i as i32 + 1);
+            assert!((x - planted).abs() < 1e-14 * planted.abs(), "{i}: {x:e}");
         }
     }
 
