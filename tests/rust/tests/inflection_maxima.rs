@@ -303,3 +303,37 @@ fn a_count_can_be_broken_off() {
     assert_eq!(polygon_inflections_with(&points, Dimension::Three, &go_on).unwrap(), None);
     assert!(asked.load(Ordering::Relaxed) < 200);
 }
+
+/// A piece in a plane that begins by turning the other way, by about as much as rounding: no direction
+/// shows more than a count that is called exact.
+#[test]
+fn what_hardly_turns_the_other_way_is_counted_or_uncertain() {
+    let mut random = Random::new(81);
+    let mut certain = [0; 2];
+    for case in 0..4000 {
+        let [x, y] = [random.vector(), random.vector()];
+        // The turn at the start, in the plane and off it.
+        let [back, off] = [16.0, 16.5].map(|k| 10f64.powf(-k + 3.0 * random.unit()));
+        let at = |p: [f64; 2]| x * p[0] + y * p[1];
+        let mut control = [[0.0, 0.0], [1.0, 0.0], [2.0, -back], [2.5, 1.0]].map(at);
+        control[2] += x.cross(y) * off;
+        let breaks = vec![0.0, 1.0];
+        let weights = [1.0; 4];
+        let curve = match case % 2 {
+            0 => PiecewiseBezier::new(breaks, &control, 3, Dimension::Three),
+            _ => PiecewiseBezier::rational(breaks, &control, &weights, 3, Dimension::Three),
+        }
+        .unwrap();
+        let most = curve_inflections(&curve);
+        let normal = x.cross(y).normalize();
+        for step in 0..20 {
+            let direction = normal + random.vector() * (0.1 * f64::from(step));
+            let seen = curve_inflections_from(&curve, direction).unwrap();
+            let holds = !seen.exact || !most.exact || seen.count <= most.count;
+            assert!(holds, "{case}: {most:?} {seen:?} {back:e} {off:e}");
+        }
+        certain[most.count.min(1)] += usize::from(most.exact);
+    }
+    // Both are found, and mostly called certain.
+    assert!(certain.iter().all(|&n| n > 500), "{certain:?}");
+}

@@ -24,7 +24,7 @@ use glam::DVec3;
 use shapespline_geometry::{Dimension, InputError, PiecewiseBezier, normalize};
 
 use self::{
-    sequence::{NOISE, STRAIGHT, Sequence, lies_in},
+    sequence::{NOISE, STRAIGHT, Sequence, along, from_beside, hidden_from_beside, lies_in},
     sweep::most,
     walk::Most,
 };
@@ -187,7 +187,9 @@ pub fn curve_inflections_with(
         return Some(InflectionCount { exact, ..found });
     }
     if let Some(normal) = plane(&segment) {
-        return Some(seen(normal));
+        let (found, beside) = (seen(normal), counted(&segment, normal, true));
+        let exact = found.exact && beside.exact && beside.count <= found.count;
+        return Some(InflectionCount { exact, ..found });
     }
     let mut best = InflectionCount { exact: false, ..NONE };
     // No more values than take a second or so.
@@ -262,6 +264,11 @@ fn pieces(curve: &PiecewiseBezier) -> Segment {
 }
 
 fn seen_from(segment: &Segment, direction: DVec3) -> InflectionCount {
+    counted(segment, direction, false)
+}
+
+/// With `beside`, along the normal of a plane: no direction shows more.
+fn counted(segment: &Segment, direction: DVec3, beside: bool) -> InflectionCount {
     let (mut count, mut exact, mut last) = (0, true, None);
     let mut take = |sign: bool| {
         count += usize::from(last.is_some_and(|l| l != sign));
@@ -269,16 +276,18 @@ fn seen_from(segment: &Segment, direction: DVec3) -> InflectionCount {
     };
     let mut joints = corners(segment);
     for piece in &segment.pieces {
-        let along = piece.omega().map(1.0, |w| w.dot(direction));
+        let omega = piece.omega();
+        let along = if beside { from_beside(&omega, direction) } else { along(&omega, direction) };
         let (signs, open) = along.signs();
         // What is straight but for rounding, or seen from within its plane, turns one way and the other.
         let noise = !signs.is_empty() && along.bound() <= NOISE * along.error();
         exact &= !open && !noise;
         signs.into_iter().for_each(&mut take);
         if let Some((_, turn, error)) = joints.next() {
-            let turn = turn.dot(direction);
-            if turn.abs() > error.max(STRAIGHT) {
-                take(turn > 0.0);
+            let off = if beside { turn.cross(direction).length() } else { 0.0 };
+            let along = turn.dot(direction);
+            if along.abs() > hidden_from_beside(error.max(STRAIGHT), off) {
+                take(along > 0.0);
             }
         }
     }
