@@ -11,7 +11,8 @@ use crate::{
 /// in the last row. O(n) time, and O(n) memory for the column that fills in.
 ///
 /// The last unknown is set aside: the rest is a tridiagonal system with two right-hand sides, the
-/// given one and the last column. Shares below 2e−308 have fewer digits, as there.
+/// given one and the last column. Each row holds to rounding in terms of its entries and of the largest
+/// unknown; unknowns much smaller than that are the difference of larger numbers.
 ///
 /// # Errors
 /// As [`solve_tridiagonal`].
@@ -84,6 +85,18 @@ mod tests {
         for (i, x) in right[..n - 1].iter().enumerate() {
             let planted = (-1e-30f64).powi(i as i32 + 1);
             assert!((x - planted).abs() < 1e-14 * planted.abs(), "{i}: {x:e}");
+        }
+    }
+
+    /// Found by fuzzing: the first two unknowns are zero, and come out as the rounding of the third.
+    #[test]
+    fn rows_of_small_unknowns_hold_in_terms_of_the_largest() {
+        let (lower, upper) = ([0.0, -1.0, -1.0], [-2.0, -3.0, 0.0]);
+        let (diagonal, right) = ([5.0, 9.0, 3.0], [0.0, 1.0, -1.0]);
+        let mut x = right;
+        solve_cyclic(&lower, &mut diagonal.clone(), &upper, &mut x).unwrap();
+        for (found, exact) in x.into_iter().zip([0.0, 0.0, -1.0 / 3.0]) {
+            assert!((found - exact).abs() <= 1e-16, "{x:?}");
         }
     }
 

@@ -53,7 +53,11 @@ fn systems(bytes: &mut Bytes<'_>) {
         let l = if i > 0 || cyclic { lower[i] * x[before] } else { 0.0 };
         let u = if i + 1 < n || cyclic { upper[i] * x[after] } else { 0.0 };
         let own = diagonal[i] * x[i];
-        let size = l.abs() + u.abs() + own.abs() + right[i].abs();
+        // Around a cycle, unknowns may be the difference of numbers as large as the largest of them.
+        let size = match cyclic {
+            true => (lower[i].abs() + diagonal[i] + upper[i].abs()) * most,
+            false => l.abs() + u.abs() + own.abs(),
+        } + right[i].abs();
         let residual = (l + own + u - right[i]).abs();
         // Entries of x are multiples of the least number there is, and so are the shares that a row has in
         // the unknowns of others.
