@@ -337,3 +337,49 @@ fn what_hardly_turns_the_other_way_is_counted_or_uncertain() {
     // Both are found, and mostly called certain.
     assert!(certain.iter().all(|&n| n > 500), "{certain:?}");
 }
+
+/// A piece that ends in a short leg, or begins with two that all but cancel: which way the curve turns there
+/// is rounding, and no count is certain.
+#[test]
+fn turns_at_short_legs_are_uncertain() {
+    let mut random = Random::new(82);
+    for case in 0..400 {
+        let [x, y, z] = [DVec3::X, DVec3::Y, DVec3::Z].map(|v| v + random.vector() * 0.3);
+        let tiny = random.vector() * 10f64.powf(-13.0 - 2.0 * random.unit());
+        let short = x * 1e-4;
+        let legs = match case % 2 {
+            0 => [[x, tiny, tiny], [y, x, z]],
+            _ => [[y, z, y], [short, y * 1e-11 - short, z]],
+        };
+        let mut at = DVec3::ZERO;
+        let control: Vec<DVec3> = legs
+            .iter()
+            .flat_map(|[a, b, c]| {
+                let piece = [at, at + a, at + a + b, at + a + b + c];
+                at = piece[3];
+                piece
+            })
+            .collect();
+        let curve = PiecewiseBezier::new(vec![0.0, 1.0, 2.0], &control, 3, Dimension::Three);
+        let curve = curve.unwrap();
+        let most = curve_inflections(&curve);
+        assert!(!most.exact, "{case}: {most:?}");
+    }
+}
+
+/// Directions within 1e−9 of the plane of a piece, and at a right angle to a turn that is known to 1e−7.
+#[test]
+fn directions_that_count_as_one_are_uncertain() {
+    let seen = |tilt: f64| {
+        let points = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [2.0, 1.0, 0.0], [2.0, 2.0, 0.0]];
+        let control = points.map(DVec3::from);
+        let curve = PiecewiseBezier::new(vec![0.0, 1.0], &control, 3, Dimension::Three).unwrap();
+        curve_inflections_from(&curve, DVec3::new(1.0, 0.0, tilt)).unwrap().exact
+    };
+    assert_eq!([1e-8, 1e-10, 0.0].map(seen), [true, false, true]);
+    let seen = |turn: f64| {
+        let points = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [2.0, turn, 0.0]].map(DVec3::from);
+        polygon_inflections_from(&points, DVec3::X).unwrap().exact
+    };
+    assert_eq!([0.5, 1e-4, 1e-8].map(seen), [true, true, false]);
+}

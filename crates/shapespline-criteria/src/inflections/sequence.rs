@@ -145,6 +145,7 @@ impl Sequence {
             sequence.push_piece(k, legs, velocity.error(), &piece.omega());
             if let Some((_, turn, error)) = joints.next() {
                 let size = turn.length();
+                sequence.open |= error > STRAIGHT && size <= NOISE * error;
                 if size > error.max(STRAIGHT) {
                     sequence.push_line(turn / size, error / size, [k + 1; 2]);
                 }
@@ -190,6 +191,8 @@ impl Sequence {
         }
         let [first, _, last] = omega;
         let sizes = [first.length(), last.length()];
+        // Next to legs that all but agree: which way it turns there is rounding.
+        self.open |= sizes.iter().any(|&size| size <= NOISE * omega_error);
         let joined = self.push_line(first / sizes[0], omega_error / sizes[0], [k; 2]);
         let mut arc = Arc::new(self.lines.len() - 1, tangent, omega, error, k);
         if let Some(before) =
