@@ -11,7 +11,8 @@ use crate::{
 /// in the last row. O(n) time, and O(n) memory for the column that fills in.
 ///
 /// The last unknown is set aside: the rest is a tridiagonal system with two right-hand sides, the
-/// given one and the last column.
+/// given one and the last column. Each row holds to rounding in terms of its entries and of the largest
+/// unknown; unknowns much smaller than that are the difference of larger numbers.
 ///
 /// # Errors
 /// As [`solve_tridiagonal`].
@@ -70,6 +71,32 @@ mod tests {
             for (found, planted) in right.iter().zip(&x) {
                 prop_assert!((found - planted).abs() < 1e-11);
             }
+        }
+    }
+
+    /// What a row hands on is `−1e−30` of its own: all digits of it, down to 1e−300.
+    #[test]
+    fn shares_keep_their_digits_down_to_the_least_normal_number() {
+        let n = 11;
+        let (lower, upper) = (vec![1e-30; n], vec![0.0; n]);
+        let mut right = vec![0.0; n];
+        right[n - 1] = 1.0;
+        solve_cyclic(&lower, &mut vec![1.0; n], &upper, &mut right).unwrap();
+        for (i, x) in right[..n - 1].iter().enumerate() {
+            let planted = (-1e-30f64).powi(i as i32 + 1);
+            assert!((x - planted).abs() < 1e-14 * planted.abs(), "{i}: {x:e}");
+        }
+    }
+
+    /// Found by fuzzing: the first two unknowns are zero, and come out as the rounding of the third.
+    #[test]
+    fn rows_of_small_unknowns_hold_in_terms_of_the_largest() {
+        let (lower, upper) = ([0.0, -1.0, -1.0], [-2.0, -3.0, 0.0]);
+        let (diagonal, right) = ([5.0, 9.0, 3.0], [0.0, 1.0, -1.0]);
+        let mut x = right;
+        solve_cyclic(&lower, &mut diagonal.clone(), &upper, &mut x).unwrap();
+        for (found, exact) in x.into_iter().zip([0.0, 0.0, -1.0 / 3.0]) {
+            assert!((found - exact).abs() <= 1e-16, "{x:?}");
         }
     }
 

@@ -20,7 +20,9 @@ impl<T> RightHandSide for T where
 /// Solves a tridiagonal system in place: `lower[i] x[i−1] + diagonal[i] x[i] + upper[i] x[i+1] =
 /// right[i]`. On return `right` holds the solution and `diagonal` the multipliers that were used.
 /// `lower[0]` and the last `upper` are not read. O(n), no pivoting: meant for diagonally dominant
-/// systems.
+/// systems. The share that one unknown has in another (a multiplier, or a product of them) is rounded to
+/// multiples of 5e−324: where entries of the matrix differ so much that a share is below 2e−308, what it
+/// adds has fewer digits.
 ///
 /// # Errors
 /// Lengths that differ, and a pivot that is zero or not finite.

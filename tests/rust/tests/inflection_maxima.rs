@@ -303,3 +303,83 @@ fn a_count_can_be_broken_off() {
     assert_eq!(polygon_inflections_with(&points, Dimension::Three, &go_on).unwrap(), None);
     assert!(asked.load(Ordering::Relaxed) < 200);
 }
+
+/// A piece in a plane that begins by turning the other way, by about as much as rounding: no direction
+/// shows more than a count that is called exact.
+#[test]
+fn what_hardly_turns_the_other_way_is_counted_or_uncertain() {
+    let mut random = Random::new(81);
+    let mut certain = [0; 2];
+    for case in 0..4000 {
+        let [x, y] = [random.vector(), random.vector()];
+        // The turn at the start, in the plane and off it.
+        let [back, off] = [16.0, 16.5].map(|k| 10f64.powf(-k + 3.0 * random.unit()));
+        let at = |p: [f64; 2]| x * p[0] + y * p[1];
+        let mut control = [[0.0, 0.0], [1.0, 0.0], [2.0, -back], [2.5, 1.0]].map(at);
+        control[2] += x.cross(y) * off;
+        let breaks = vec![0.0, 1.0];
+        let weights = [1.0; 4];
+        let curve = match case % 2 {
+            0 => PiecewiseBezier::new(breaks, &control, 3, Dimension::Three),
+            _ => PiecewiseBezier::rational(breaks, &control, &weights, 3, Dimension::Three),
+        }
+        .unwrap();
+        let most = curve_inflections(&curve);
+        let normal = x.cross(y).normalize();
+        for step in 0..20 {
+            let direction = normal + random.vector() * (0.1 * f64::from(step));
+            let seen = curve_inflections_from(&curve, direction).unwrap();
+            let holds = !seen.exact || !most.exact || seen.count <= most.count;
+            assert!(holds, "{case}: {most:?} {seen:?} {back:e} {off:e}");
+        }
+        certain[most.count.min(1)] += usize::from(most.exact);
+    }
+    // Both are found, and mostly called certain.
+    assert!(certain.iter().all(|&n| n > 500), "{certain:?}");
+}
+
+/// A piece that ends in a short leg, or begins with two that all but cancel: which way the curve turns there
+/// is rounding, and no count is certain.
+#[test]
+fn turns_at_short_legs_are_uncertain() {
+    let mut random = Random::new(82);
+    for case in 0..400 {
+        let [x, y, z] = [DVec3::X, DVec3::Y, DVec3::Z].map(|v| v + random.vector() * 0.3);
+        let tiny = random.vector() * 10f64.powf(-13.0 - 2.0 * random.unit());
+        let short = x * 1e-4;
+        let legs = match case % 2 {
+            0 => [[x, tiny, tiny], [y, x, z]],
+            _ => [[y, z, y], [short, y * 1e-11 - short, z]],
+        };
+        let mut at = DVec3::ZERO;
+        let control: Vec<DVec3> = legs
+            .iter()
+            .flat_map(|[a, b, c]| {
+                let piece = [at, at + a, at + a + b, at + a + b + c];
+                at = piece[3];
+                piece
+            })
+            .collect();
+        let curve = PiecewiseBezier::new(vec![0.0, 1.0, 2.0], &control, 3, Dimension::Three);
+        let curve = curve.unwrap();
+        let most = curve_inflections(&curve);
+        assert!(!most.exact, "{case}: {most:?}");
+    }
+}
+
+/// Directions within 1e−9 of the plane of a piece, and at a right angle to a turn that is known to 1e−7.
+#[test]
+fn directions_that_count_as_one_are_uncertain() {
+    let seen = |tilt: f64| {
+        let points = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [2.0, 1.0, 0.0], [2.0, 2.0, 0.0]];
+        let control = points.map(DVec3::from);
+        let curve = PiecewiseBezier::new(vec![0.0, 1.0], &control, 3, Dimension::Three).unwrap();
+        curve_inflections_from(&curve, DVec3::new(1.0, 0.0, tilt)).unwrap().exact
+    };
+    assert_eq!([1e-8, 1e-10, 0.0].map(seen), [true, false, true]);
+    let seen = |turn: f64| {
+        let points = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [2.0, turn, 0.0]].map(DVec3::from);
+        polygon_inflections_from(&points, DVec3::X).unwrap().exact
+    };
+    assert_eq!([0.5, 1e-4, 1e-8].map(seen), [true, true, false]);
+}

@@ -44,6 +44,34 @@ fn every_kind_of_polygon_is_solved_and_fairest_needs_no_more_tension_than_growth
     }
 }
 
+/// The limit that the documentation states: where neighbouring spacings differ by 1e5, tangents lean from
+/// the chord between the close parameters by 1e−10, and every family still finds its shape.
+#[test]
+fn spacings_that_differ_by_1e5_are_solved() {
+    let mut random = Random::new(19);
+    for case in 0..300 {
+        let kind = if case % 2 == 0 { Kind::Walk } else { Kind::Planar };
+        let points = kind.points(4 + case % 5, &mut random);
+        let close = random.below(points.len() - 1);
+        let spacing = |i: usize| if i == close { 1e-5 } else { 0.5 + random.unit() };
+        let steps = (0..points.len() - 1).map(spacing);
+        let mut u = vec![0.0];
+        u.extend(steps.scan(0.0, |u, h| {
+            *u += h;
+            Some(*u)
+        }));
+        let given = Parametrization::Given(u);
+        let polygon = DataPolygon::new(points, &given, Boundary::ZeroCurvature).unwrap();
+        let options = SearchOptions::default();
+        let fits = [
+            NuSpline::shape_preserving(polygon.clone(), &options).unwrap().outcome,
+            TensionSpline::shape_preserving(polygon.clone(), &options).unwrap().outcome,
+            CatmullRom::shape_preserving(polygon, &HandleOptions::default()).unwrap().outcome,
+        ];
+        assert!(fits.iter().all(|o| o.diagnostics.status == Status::Solved), "{case}: {fits:?}");
+    }
+}
+
 /// The connected runs of positive tension, as ranges of nodes (none of these data is closed).
 fn runs(tension: &[f64]) -> Vec<std::ops::Range<usize>> {
     let mut found: Vec<std::ops::Range<usize>> = Vec::new();

@@ -24,7 +24,7 @@ use glam::DVec3;
 use shapespline_geometry::{Dimension, InputError, PiecewiseBezier, normalize};
 
 use self::{
-    sequence::{NOISE, STRAIGHT, Sequence, lies_in},
+    sequence::{NOISE, STRAIGHT, Sequence, along, from_beside, hidden_from_beside, lies_in},
     sweep::most,
     walk::Most,
 };
@@ -94,10 +94,11 @@ pub fn polygon_inflections_from(
     let direction = unit(direction)?;
     let turns = turns(points)?;
     // Where the polygon hardly turns rounding may have turned the vector further than it leans; and from
-    // between vectors that count as one (see `sweep`) one of them leans no further than this.
+    // between vectors that count as one (see `sweep`) one of them leans no further than this. A right
+    // angle is one where the vector is known to be at it.
     let told = |(v, error): &(DVec3, f64)| {
         let x = v.dot(direction).abs();
-        x <= ZERO || x > 8.0 * (error + 4.0 * f64::EPSILON)
+        (x <= ZERO && *error <= STRAIGHT) || x > 8.0 * (error + 4.0 * f64::EPSILON)
     };
     let (count, exact) = (changes(&turns, direction), turns.iter().all(told));
     Ok(InflectionCount { count, direction, exact })
@@ -187,7 +188,9 @@ pub fn curve_inflections_with(
         return Some(InflectionCount { exact, ..found });
     }
     if let Some(normal) = plane(&segment) {
-        return Some(seen(normal));
+        let (found, beside) = (seen(normal), counted(&segment, normal, true));
+        let exact = found.exact && beside.exact && beside.count <= found.count;
+        return Some(InflectionCount { exact, ..found });
     }
     let mut best = InflectionCount { exact: false, ..NONE };
     // No more values than take a second or so.
@@ -262,6 +265,11 @@ fn pieces(curve: &PiecewiseBezier) -> Segment {
 }
 
 fn seen_from(segment: &Segment, direction: DVec3) -> InflectionCount {
+    counted(segment, direction, false)
+}
+
+/// With `beside`, along the normal of a plane: no direction shows more.
+fn counted(segment: &Segment, direction: DVec3, beside: bool) -> InflectionCount {
     let (mut count, mut exact, mut last) = (0, true, None);
     let mut take = |sign: bool| {
         count += usize::from(last.is_some_and(|l| l != sign));
@@ -269,16 +277,22 @@ fn seen_from(segment: &Segment, direction: DVec3) -> InflectionCount {
     };
     let mut joints = corners(segment);
     for piece in &segment.pieces {
-        let along = piece.omega().map(1.0, |w| w.dot(direction));
+        let omega = piece.omega();
+        let along = if beside { from_beside(&omega, direction) } else { along(&omega, direction) };
         let (signs, open) = along.signs();
-        // What is straight but for rounding, or seen from within its plane, turns one way and the other.
-        let noise = !signs.is_empty() && along.bound() <= NOISE * along.error();
+        // What is straight but for rounding, or seen from within its plane, turns one way and the other;
+        // and planes within `STRAIGHT` of each other count as one.
+        let unclear = (NOISE * along.error()).max(STRAIGHT * omega.bound());
+        let noise = !signs.is_empty() && along.bound() <= unclear;
         exact &= !open && !noise;
         signs.into_iter().for_each(&mut take);
         if let Some((_, turn, error)) = joints.next() {
-            let turn = turn.dot(direction);
-            if turn.abs() > error.max(STRAIGHT) {
-                take(turn > 0.0);
+            let off = if beside { turn.cross(direction).length() } else { 0.0 };
+            let along = turn.dot(direction);
+            // Next to a tangent that is short beside its piece, rounding makes a corner, or hides one.
+            exact &= error <= STRAIGHT || along.abs() > NOISE * error;
+            if along.abs() > hidden_from_beside(error.max(STRAIGHT), off) {
+                take(along > 0.0);
             }
         }
     }

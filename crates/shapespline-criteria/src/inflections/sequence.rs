@@ -18,6 +18,24 @@ pub(super) fn lies_in(omega: &Polynomial<DVec3>, normal: DVec3) -> bool {
     omega.coefficients().iter().all(|c| c.cross(normal).length() <= omega.error())
 }
 
+/// `ω` along a direction.
+pub(super) fn along(omega: &Polynomial<DVec3>, direction: DVec3) -> Polynomial<f64> {
+    omega.map(1.0, |w| w.dot(direction))
+}
+
+/// The `ω` of a piece in a plane along its normal, with the signs that directions beside it see as well.
+pub(super) fn from_beside(omega: &Polynomial<DVec3>, normal: DVec3) -> Polynomial<f64> {
+    let along = along(omega, normal);
+    let off = omega.coefficients().iter().map(|w| w.cross(normal).length()).fold(0.0, f64::max);
+    Polynomial::new(along.coefficients().to_vec(), hidden_from_beside(along.error(), off))
+}
+
+/// What is hidden along the normal from every direction, where `hidden` is along the direction itself:
+/// what leaves the plane, by `off`, adds to what is seen from beside the normal.
+pub(super) fn hidden_from_beside(hidden: f64, off: f64) -> f64 {
+    (hidden * hidden - off * off).max(0.0).sqrt()
+}
+
 /// A vector `V` of the sequence. Seen from `w` it has the sign of `w·V`, so that its great circle
 /// `w·V = 0` is where it changes.
 #[derive(Debug, Clone, Copy)]
@@ -127,6 +145,7 @@ impl Sequence {
             sequence.push_piece(k, legs, velocity.error(), &piece.omega());
             if let Some((_, turn, error)) = joints.next() {
                 let size = turn.length();
+                sequence.open |= error > STRAIGHT && size <= NOISE * error;
                 if size > error.max(STRAIGHT) {
                     sequence.push_line(turn / size, error / size, [k + 1; 2]);
                 }
@@ -159,10 +178,11 @@ impl Sequence {
         let planar = STRAIGHT * length + 4.0 * omega_error;
         if omega.iter().all(|v| v.cross(longest).length() <= length * planar) {
             let normal = longest / length;
-            let along = Polynomial::new(omega.map(|v| v.dot(normal)).to_vec(), omega_error);
+            let lies = lies_in(seen, normal);
+            let along = if lies { from_beside(seen, normal) } else { along(seen, normal) };
             let (signs, open) = along.signs();
             // Off its plane by more than rounding, it shows two inflections to someone in the plane.
-            self.open |= open || !lies_in(seen, normal);
+            self.open |= open || !lies;
             for sign in signs {
                 let v = if sign { normal } else { -normal };
                 self.push_line(v, omega_error / length, [k, k + 1]);
@@ -171,6 +191,8 @@ impl Sequence {
         }
         let [first, _, last] = omega;
         let sizes = [first.length(), last.length()];
+        // Next to legs that all but agree: which way it turns there is rounding.
+        self.open |= sizes.iter().any(|&size| size <= NOISE * omega_error);
         let joined = self.push_line(first / sizes[0], omega_error / sizes[0], [k; 2]);
         let mut arc = Arc::new(self.lines.len() - 1, tangent, omega, error, k);
         if let Some(before) =

@@ -47,15 +47,22 @@ fn systems(bytes: &mut Bytes<'_>) {
     if !dominant || all().any(|v| !(v.abs() < 1e100)) {
         return;
     }
+    let most = x.iter().fold(0.0f64, |m, x| m.max(x.abs()));
     for i in 0..n {
         let (before, after) = ((i + n - 1) % n, (i + 1) % n);
         let l = if i > 0 || cyclic { lower[i] * x[before] } else { 0.0 };
         let u = if i + 1 < n || cyclic { upper[i] * x[after] } else { 0.0 };
         let own = diagonal[i] * x[i];
-        let size = l.abs() + u.abs() + own.abs() + right[i].abs();
+        // Around a cycle, unknowns may be the difference of numbers as large as the largest of them.
+        let size = match cyclic {
+            true => (lower[i].abs() + diagonal[i] + upper[i].abs()) * most,
+            false => l.abs() + u.abs() + own.abs(),
+        } + right[i].abs();
         let residual = (l + own + u - right[i]).abs();
-        // Entries of x are multiples of the least number there is.
+        // Entries of x are multiples of the least number there is, and so are the shares that a row has in
+        // the unknowns of others.
         let grain = 1e-322 * (1.0 + lower[i].abs() + diagonal[i].abs() + upper[i].abs());
+        let grain = grain * (1.0 + most);
         assert!(residual <= (1e-12 * size).max(grain), "row {i} of {n}: {residual:e} of {size:e}");
     }
 }

@@ -28,7 +28,7 @@ pub(super) fn run(data: &[u8]) {
     let max_iterations = if doubling { None } else { Some(bytes.below(64)) };
     let options = SearchOptions { criteria, tolerances, strategy, step, max_iterations };
     let default = tolerances == Tolerances::default() && criteria == Criteria::ALL && step == 0.5;
-    let solvable = bytes.is_tame() && fits(&polygon) && is_clear(&polygon);
+    let solvable = bytes.is_tame() && fits(&polygon) && is_clear(&polygon) && leans(&polygon);
     let must_solve = default && doubling && solvable;
     let continuity = if bytes.flag() { Continuity::C1 } else { Continuity::G1 };
     let safety = if bytes.below(4) == 0 { bytes.unscaled() } else { 0.9 };
@@ -69,6 +69,25 @@ fn is_clear(polygon: &DataPolygon) -> bool {
         let [a, b, c] = [d[i], d[(i + 1) % n], d[(i + 2) % n]];
         clear(a.cross(b).length()) && clear(a.cross(b).dot(c)) && clear(a.cross(b).dot(b.cross(c)))
     })
+}
+
+/// Whether tangents lean away from both chords by more than rounding. At a node a tangent is close to
+/// `h_i v_{i−1} + h_{i−1} v_i` (of chord velocities `v`): where neighbouring spacings differ by a factor ρ,
+/// and chords do not, it leans from one chord by `1/ρ²`. Under any tension: convexity and torsion then
+/// hang on digits that legs do not have, and a search may end, honestly, unsolved.
+fn leans(polygon: &DataPolygon) -> bool {
+    let n = polygon.segments();
+    let velocity = |i: usize| length(polygon.chord(i)) / polygon.spacing(i);
+    let at = |i: usize| {
+        let j = (i + 1) % n;
+        let sine = polygon.direction(i).cross(polygon.direction(j)).length();
+        let before = polygon.spacing(j) * velocity(i);
+        let after = polygon.spacing(i) * velocity(j);
+        // What counts as straight is not asked to lean.
+        sine < 1e-12 || sine * before.min(after) > 1e-11 * (before + after)
+    };
+    let nodes = if polygon.is_closed() { n } else { n - 1 };
+    (0..nodes).all(at)
 }
 
 struct Judged<'a, 'b> {
