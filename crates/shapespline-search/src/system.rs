@@ -92,6 +92,7 @@ impl<S: Rows> Rows for Kept<'_, S> {
 #[derive(Debug)]
 pub struct SolvedFamily<S> {
     system: S,
+    /// Made when tension first changes: most curves need none.
     kept: Vec<Row>,
     solver: Resolvable,
     /// Scratch: the rows an update changes, and the unknowns it touches.
@@ -105,9 +106,8 @@ impl<S: TensionSystem> SolvedFamily<S> {
     /// # Errors
     /// A system that f64 cannot hold.
     pub fn new(system: S) -> Result<Self, SolveError> {
-        let kept: Vec<Row> = (0..system.count().min(KEPT)).map(|i| system.row(i)).collect();
-        let solver = Resolvable::new(&Kept { system: &system, rows: &kept })?;
-        Ok(Self { system, kept, solver, rows: Vec::new(), unknowns: Vec::new() })
+        let solver = Resolvable::new(&system)?;
+        Ok(Self { system, kept: Vec::new(), solver, rows: Vec::new(), unknowns: Vec::new() })
     }
 
     /// End legs of every segment, and the system.
@@ -148,6 +148,10 @@ impl<S: TensionSystem> TensionFamily for SolvedFamily<S> {
         }
         self.rows.sort_unstable();
         self.rows.dedup();
+        if self.kept.is_empty() {
+            let kept = 0..self.system.count().min(KEPT);
+            self.kept.extend(kept.map(|i| self.system.row(i)));
+        }
         for &i in &self.rows {
             if let Some(row) = self.kept.get_mut(i) {
                 *row = self.system.row(i);
