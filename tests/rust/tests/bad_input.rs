@@ -42,6 +42,14 @@ fn data() {
     for (message, place, value) in cases {
         assert!(message.contains(place) && message.contains(value), "{message}");
     }
+    // Far away from the origin, and yet close to each other.
+    let far = |x: f64| vec![DVec3::X * x, DVec3::new(x, 1.0, 0.0), DVec3::new(x, 1.0, 1.0)];
+    assert!(DataPolygon::new(far(1e307), chordal, natural).is_ok());
+    let message = refused(far(-1.5e307), chordal, natural);
+    assert!(message.contains("points[0]") && message.contains("1.1e307"), "{message}");
+    let message = refused(with(3, DVec3::Y * 1.2e307), chordal, natural);
+    assert!(message.contains("points[3]") && message.contains("1.1e307"), "{message}");
+
     let planar = DataPolygon::planar(&[[0.0, 0.0], [1.0, f64::NAN]], chordal, natural);
     assert!(planar.unwrap_err().to_string().contains("points[1]"));
 }
