@@ -342,3 +342,32 @@ pub(crate) fn plane_normal(p: DVec3, q: DVec3) -> DVec3 {
     let (p, q) = (p.normalize_or_zero(), q.normalize_or_zero());
     (if p.dot(q) < 0.0 { p - q } else { p + q }).normalize_or_zero()
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use shapespline_geometry::Parametrization;
+
+    use super::*;
+
+    /// Whether the first segments answer or all are looked at.
+    #[test]
+    fn planar_is_what_twists_no_more_than_the_tolerance() {
+        let planar = |n: usize, lift: fn(usize) -> f64| {
+            let at = |k: usize| DVec3::new(k as f64, (0.7 * k as f64).sin(), lift(k));
+            let points = (0..=n).map(at).collect();
+            let ends = Boundary::ZeroCurvature;
+            let polygon = DataPolygon::new(points, &Parametrization::Uniform, ends).unwrap();
+            Calls::is_planar(&polygon, &Tolerances::default())
+        };
+        for n in [1, 2, 3, 4, 5, 70, 2 * BLOCK + 3] {
+            assert!(planar(n, |_| 0.0) && planar(n, |k| 1e-12 * (k as f64).cos()), "{n}");
+            // Three chords are the least that twist.
+            let twists = n >= 3;
+            assert_eq!(planar(n, |k| 1e-6 * (k as f64).cos()), !twists, "{n}");
+            assert_eq!(planar(n, |k| if k == 3 { 1e-6 } else { 0.0 }), !twists, "{n}");
+        }
+        assert!(!planar(70, |k| if k == 69 { 1e-6 } else { 0.0 }));
+        assert!(!planar(3 * BLOCK, |k| if k == 3 * BLOCK { 1e-6 } else { 0.0 }));
+    }
+}
