@@ -383,3 +383,26 @@ fn directions_that_count_as_one_are_uncertain() {
     };
     assert_eq!([0.5, 1e-4, 1e-8].map(seen), [true, true, false]);
 }
+
+/// A piece that hardly curves has a plane known to 1e−5; beside a piece whose plane is as far from it, they may
+/// be one plane or two.
+#[test]
+fn planes_that_may_be_one_are_uncertain() {
+    let most = |tilt: f64| {
+        let [bent, up] = [DVec3::new(1.0, 1e-9, 0.0), DVec3::new(0.0, 1.0, tilt)];
+        let legs = [DVec3::X, DVec3::X, bent, bent, bent + up, up];
+        let mut at = DVec3::ZERO;
+        let mut control = vec![at];
+        for (i, leg) in legs.into_iter().enumerate() {
+            at += leg;
+            control.push(at);
+            if i == 2 {
+                control.push(at);
+            }
+        }
+        let curve = PiecewiseBezier::new(vec![0.0, 1.0, 2.0], &control, 3, Dimension::Three);
+        let most = curve_inflections(&curve.unwrap());
+        (most.count, most.exact)
+    };
+    assert_eq!([1.0, 1e-5, 0.0].map(most), [(1, true), (0, false), (0, true)]);
+}

@@ -219,6 +219,8 @@ impl Sequence {
             let apart = last.v.cross(v).length();
             if last.v.dot(v) > 0.0 && apart <= STRAIGHT.max(last.error + error) {
                 last.error = last.error.max(error).max(apart);
+                // Known to no better than that, they need not be the same.
+                self.open |= apart > STRAIGHT;
                 last.joints = [last.joints[0].min(joints[0]), last.joints[1].max(joints[1])];
                 return true;
             }

@@ -86,6 +86,7 @@ impl Walk {
             let w = e1 * c + e2 * s;
             events.push(Event { at: place(c, s), width: width / size.abs(), begins: 0.0, item, w });
         };
+        let mut best = Most::NONE;
         self.parallel.clear();
         for (j, line) in sequence.lines.iter().enumerate() {
             let (x, y) = (line.v.dot(e1), line.v.dot(e2));
@@ -94,6 +95,9 @@ impl Walk {
             self.parallel.push((!crossed).then(|| line.v.dot(v) > 0.0));
             if crossed {
                 meet(y, -x, slack, Item::Line(j));
+            } else if x * x + y * y > STRAIGHT * STRAIGHT {
+                // Parallel as far as is known, and what is between may be no small cell.
+                best.upper = usize::MAX;
             }
         }
         for (k, arc) in sequence.arcs.iter().enumerate() {
@@ -115,7 +119,6 @@ impl Walk {
             });
         }
         let begin = self.begin_in_the_widest_gap(v, e1);
-        let mut best = Most::NONE;
         for side in [true, false] {
             let (view, parallel) = (&mut self.view, &self.parallel);
             view.look(sequence, begin, |j| match parallel[j] {
