@@ -162,9 +162,8 @@ fn lower<F: TensionFamily>(
     all: bool,
 ) -> Result<usize, F::Error> {
     state.relaxations += 1;
-    // No tension at all comes first: growth often raises more nodes than it had to. Without any
-    // anywhere the curve has faults, or none would have been raised.
-    if !all && keeps_shape(state, nodes, 0.0)? {
+    // No tension at all comes first: growth often raises more nodes than it had to.
+    if !(all && state.plain_fails) && keeps_shape(state, nodes, 0.0)? {
         return Ok(nodes.len());
     }
     let (mut breaks, mut keeps) = (0.0, 1.0);

@@ -100,6 +100,8 @@ pub(crate) struct State<'s, 'p, F> {
     unchecked: Vec<Range<usize>>,
     /// The segment on which the last trial failed: the first to be looked at in the next one.
     suspect: usize,
+    /// Whether the curve without any tension is known to have faults: mostly the search began with it.
+    pub(crate) plain_fails: bool,
     history: Vec<Step>,
     iterations: usize,
     solves: usize,
@@ -115,6 +117,7 @@ impl<'s, 'p, F: TensionFamily> State<'s, 'p, F> {
         checker: &'s Checker<'p>,
         monitor: &'s mut dyn FnMut(&Step) -> ControlFlow<()>,
     ) -> Self {
+        let plain_fails = !faults.is_empty() && family.tension().iter().all(|&t| t == 0.0);
         Self {
             family,
             checker,
@@ -124,6 +127,7 @@ impl<'s, 'p, F: TensionFamily> State<'s, 'p, F> {
             touched: Vec::new(),
             unchecked: Vec::new(),
             suspect: 0,
+            plain_fails,
             history: Vec::new(),
             iterations: 1,
             solves: 1,
