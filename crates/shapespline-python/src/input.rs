@@ -119,12 +119,12 @@ impl<'py> FromPyObject<'_, 'py> for Points {
     fn extract(object: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
         let array = array("points", &object)?;
         let (py, values) = (object.py(), array.values());
-        match array.shape() {
-            &[count, 3] => Ok(Self {
+        match *array.shape() {
+            [count, 3] => Ok(Self {
                 points: made(py, count, |i| DVec3::from_slice(&values[3 * i..3 * i + 3])),
                 dimension: Dimension::Three,
             }),
-            &[count, 2] => Ok(Self {
+            [count, 2] => Ok(Self {
                 points: made(py, count, |i| DVec3::new(values[2 * i], values[2 * i + 1], 0.0)),
                 dimension: Dimension::Two,
             }),
