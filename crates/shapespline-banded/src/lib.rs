@@ -3,19 +3,22 @@
 //!
 //! All solvers are O(n) and without pivoting (the systems of interpolating splines are strictly
 //! diagonally dominant or positive definite): [`solve_tridiagonal`] and [`solve_cyclic`] work in place
-//! on arrays, [`Resolvable`] keeps what it needs to solve again only where rows changed,
-//! [`block_tridiagonal`] takes 2×2 blocks, and [`box_qp`] minimises a quadratic form between bounds.
+//! on arrays, [`Resolvable`] keeps what it needs to solve again only where rows changed, a [`Place`] of
+//! it solves a few rows with other coefficients, [`block_tridiagonal`] takes 2×2 blocks, and [`box_qp`]
+//! minimises a quadratic form between bounds.
 
 pub mod block_tridiagonal;
 pub mod box_qp;
 mod cyclic;
 mod error;
+mod place;
 mod resolvable;
 mod sweep;
 mod tridiagonal;
 
 pub use cyclic::solve_cyclic;
 pub use error::SolveError;
+pub use place::Place;
 pub use resolvable::{Resolvable, Row, Rows, solve_once};
 pub use tridiagonal::{RightHandSide, solve_tridiagonal};
 

@@ -17,7 +17,7 @@ use glam::DVec3;
 
 use crate::{
     SolveError,
-    sweep::{eliminate, eliminate_all, substitute, substitute_all},
+    sweep::{Eliminated, eliminate, eliminate_all, substitute, substitute_all},
 };
 
 /// A row `lower x[i−1] + diagonal x[i] + upper x[i+1] = right`, indices modulo `n` when cyclic.
@@ -47,7 +47,7 @@ pub trait Rows {
 const SIGNIFICANT: f64 = 1e-13;
 
 /// Solution of a tridiagonal or cyclic system, with what is needed to bring it up to date.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct Resolvable {
     /// Elimination: `x[i] = reduced[i] − ratio[i] x[i+1]`.
     ratio: Vec<f64>,
@@ -63,15 +63,21 @@ impl Resolvable {
     /// # Errors
     /// A pivot that is zero or not finite.
     pub fn new<R: Rows + Sync>(rows: &R) -> Result<Self, SolveError> {
-        let n = rows.count();
-        let mut new = Self {
-            ratio: vec![0.0; n],
-            reduced: vec![DVec3::ZERO; n],
-            solution: vec![DVec3::ZERO; n],
-            changed: Vec::new(),
-        };
-        new.solve_again(rows)?;
+        let mut new = Self::default();
+        new.solve(rows)?;
         Ok(new)
+    }
+
+    /// Solves another system in the memory of this one. O(n).
+    ///
+    /// # Errors
+    /// A pivot that is zero or not finite.
+    pub fn solve<R: Rows + Sync>(&mut self, rows: &R) -> Result<(), SolveError> {
+        let n = rows.count();
+        self.ratio.resize(n, 0.0);
+        self.reduced.resize(n, DVec3::ZERO);
+        self.solution.resize(n, DVec3::ZERO);
+        self.solve_again(rows)
     }
 
     /// The unknowns.
@@ -238,6 +244,11 @@ impl Resolvable {
             done = at.saturating_sub(lift);
         }
         touched[first_touched..].sort_unstable_by_key(|r| r.start);
+    }
+
+    /// What row `i` hands on to the next.
+    pub(crate) fn eliminated(&self, i: usize) -> Eliminated {
+        (self.ratio[i], self.reduced[i])
     }
 
     #[inline]

@@ -15,7 +15,7 @@ use crate::{Rows, SolveError, error::usable, resolvable::Row};
 const PART: usize = 16_384;
 /// Rows before its own from which a part begins: two or three times as many as measured on random
 /// ν-splines.
-const EARLY: usize = 128;
+pub(crate) const EARLY: usize = 128;
 
 /// What a row hands to the next: `x[i] = reduced − ratio x[i+1]`.
 pub(crate) type Eliminated = (f64, DVec3);
