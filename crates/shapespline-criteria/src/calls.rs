@@ -88,7 +88,7 @@ impl Calls {
     #[must_use]
     pub fn of_polygon(polygon: &DataPolygon, tolerances: &Tolerances) -> Vec<Self> {
         let planar = Self::is_planar(polygon, tolerances);
-        Self::among(polygon, tolerances, planar, Criteria::EVERY)
+        Self::among(polygon, tolerances, Self::wanted(Criteria::EVERY, planar))
     }
 
     /// Whether no segment has a torsion: in a planar polygon coplanarity is no question (paper 001,
@@ -114,15 +114,8 @@ impl Calls {
             || (!(1..n.saturating_sub(1).min(FIRST)).any(twists) && all_stretches(n, flat))
     }
 
-    /// What each segment of a polygon calls for among some criteria, where it is known whether the
-    /// polygon [is planar](Self::is_planar).
-    pub(crate) fn among(
-        polygon: &DataPolygon,
-        tolerances: &Tolerances,
-        planar: bool,
-        criteria: Criteria,
-    ) -> Vec<Self> {
-        let wanted = Self::wanted(criteria, planar);
+    /// What each segment of a polygon calls for among the [wanted](Self::wanted) calls.
+    pub(crate) fn among(polygon: &DataPolygon, tolerances: &Tolerances, wanted: Self) -> Vec<Self> {
         let of = |stretch: &mut Stretch, (k, calls): (usize, &mut [Self])| {
             let start = k * Stretch::OWN;
             stretch.load(polygon, start..start + calls.len());

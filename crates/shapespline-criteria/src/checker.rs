@@ -6,7 +6,8 @@ use glam::DVec3;
 use shapespline_geometry::DataPolygon;
 
 use crate::{
-    Calls, Criteria, Criterion, Faults, Record, ShapeReport, Tolerances, WindowChecker,
+    Calls, Criteria, Criterion, Faults, Record, ShapeReport, StretchChecker, Tolerances,
+    WindowChecker,
     faults::{Cones, Situation, faults},
     margin,
 };
@@ -14,9 +15,8 @@ use crate::{
 /// The shape criteria of one data polygon.
 #[derive(Debug, Clone)]
 pub struct Checker<'a> {
-    polygon: &'a DataPolygon,
+    local: StretchChecker<'a>,
     criteria: Criteria,
-    tolerances: Tolerances,
     calls: Vec<Calls>,
 }
 
@@ -24,21 +24,20 @@ impl<'a> Checker<'a> {
     /// Finds out what each segment of the polygon calls for among `criteria`. Cost O(N).
     #[must_use]
     pub fn new(polygon: &'a DataPolygon, criteria: Criteria, tolerances: Tolerances) -> Self {
-        let planar = Calls::is_planar(polygon, &tolerances);
-        let calls = Calls::among(polygon, &tolerances, planar, criteria);
-        Self { polygon, criteria, tolerances, calls }
+        let local = StretchChecker::new(polygon, criteria, tolerances);
+        Self { local, criteria, calls: local.all_calls() }
     }
 
     /// The polygon.
     #[must_use]
     pub fn polygon(&self) -> &'a DataPolygon {
-        self.polygon
+        self.local.polygon()
     }
 
     /// What counts as near, and as zero.
     #[must_use]
     pub fn tolerances(&self) -> Tolerances {
-        self.tolerances
+        self.local.tolerances()
     }
 
     /// What each segment calls for.
@@ -69,8 +68,8 @@ impl<'a> Checker<'a> {
 
     /// This checker, for those who ask of many segments and come back to the same ones.
     #[must_use]
-    pub fn in_windows(&self) -> WindowChecker<'_, 'a> {
-        WindowChecker::new(self)
+    pub fn in_windows(&self) -> WindowChecker<'_> {
+        WindowChecker::new(self.local, Some(&self.calls))
     }
 
     /// The record of one criterion on a segment: verdict, margin and place.
@@ -101,7 +100,7 @@ impl<'a> Checker<'a> {
         record.satisfied = !self.faults(segment, legs).any(Faults::of(criterion));
         record.margin = margin.value;
         record.location =
-            self.polygon.parameters()[segment] + margin.at * self.polygon.spacing(segment);
+            self.polygon().parameters()[segment] + margin.at * self.polygon().spacing(segment);
         record
     }
 
@@ -144,13 +143,13 @@ impl<'a> Checker<'a> {
 
     #[inline]
     fn situation(&self, i: usize, legs: [DVec3; 2]) -> Situation {
-        let [p, q] = self.polygon.binormals(i);
-        Situation::new(legs, self.polygon.chord(i), p, q)
+        let [p, q] = self.polygon().binormals(i);
+        Situation::new(legs, self.polygon().chord(i), p, q)
     }
 
     pub(crate) fn cones(&self, i: usize) -> Cones {
-        let around = self.polygon.directions_around(i);
-        Cones::new(self.polygon, i, around, self.calls[i], &self.tolerances)
+        let around = self.polygon().directions_around(i);
+        Cones::new(self.polygon(), i, around, self.calls[i], &self.tolerances())
     }
 }
 

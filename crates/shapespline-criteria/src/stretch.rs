@@ -1,14 +1,13 @@
-//! The checker of one stretch of a polygon after another, for methods that are local.
+//! The checker of one stretch of a polygon after another: for methods that are local, and for a look
+//! at a curve of which nothing has to be kept.
 
 use std::ops::Range;
 
-use rayon::prelude::*;
 use shapespline_geometry::{DVec3, DataPolygon, Lanes, Stretch};
 
 use crate::{
-    Calls, Criteria, Faults, Tolerances,
+    Calls, Criteria, Faults, Tolerances, WindowChecker,
     faults::{Cones, Situation, doubtful, faults},
-    window::{BLOCK, Window, parts},
 };
 
 /// The shape criteria of a polygon, asked stretch by stretch: to the bit what a
@@ -36,6 +35,11 @@ impl<'a> StretchChecker<'a> {
         Calls::of_stretch(self.polygon, stretch, self.wanted, &self.tolerances, calls);
     }
 
+    /// What each segment of the polygon calls for. Cost O(N), on all threads for long polygons.
+    pub(crate) fn all_calls(&self) -> Vec<Calls> {
+        Calls::among(self.polygon, &self.tolerances, self.wanted)
+    }
+
     /// How many of a stretch's own segments each criterion applies to.
     #[must_use]
     pub fn applicable(stretch: &Stretch, calls: &StretchCalls) -> [usize; 6] {
@@ -50,85 +54,80 @@ impl<'a> StretchChecker<'a> {
         legs: [&Lanes; 2],
         found: &mut Vec<(usize, Faults)>,
     ) {
-        let places = stretch.own();
-        faults_of_stretch(self.polygon, &self.tolerances, stretch, calls, legs, places, found);
+        self.faults_among(stretch.own(), stretch, calls, legs, found);
     }
 
-    /// The segments that fail, ascending, and how many segments each criterion applies to: all that a
-    /// report on a curve without faults says. Cost O(N), on all threads for long curves.
-    pub fn look<L>(&self, legs: L) -> (Vec<(usize, Faults)>, [usize; 6])
-    where
-        L: Fn(usize) -> [DVec3; 2] + Sync,
-    {
-        let Self { polygon, ref tolerances, .. } = *self;
-        let look = |window: &mut Window, segments: Range<usize>| {
-            let (mut found, mut applicable) = (Vec::new(), [0; 6]);
-            for part in parts(segments) {
-                window.load(polygon, part.start / Stretch::OWN);
-                self.calls(&window.stretch, &mut window.calls);
-                add(&mut applicable, Self::applicable(&window.stretch, &window.calls));
-                window.faults(polygon, tolerances, part, &legs, &mut found);
+    /// These criteria, for those who ask of many segments and come back to the same ones.
+    #[must_use]
+    pub fn in_windows(&self) -> WindowChecker<'a> {
+        WindowChecker::new(*self, None)
+    }
+
+    /// The polygon.
+    #[must_use]
+    pub fn polygon(&self) -> &'a DataPolygon {
+        self.polygon
+    }
+
+    /// What counts as near, and as zero.
+    #[must_use]
+    pub fn tolerances(&self) -> Tolerances {
+        self.tolerances
+    }
+
+    /// Adds the segments at some of a stretch's own places that fail with the end legs `first, last`.
+    pub(crate) fn faults_among(
+        &self,
+        places: Range<usize>,
+        stretch: &Stretch,
+        calls: &StretchCalls,
+        [first, last]: [&Lanes; 2],
+        found: &mut Vec<(usize, Faults)>,
+    ) {
+        let (chords, binormals) = (stretch.chords(), stretch.binormals());
+        // Where sizes are not ordinary every segment is decided by itself.
+        let mut doubts = [1; Stretch::ROOM];
+        let mut any = 1;
+        if stretch.is_ordinary() {
+            any = 0;
+            let end = places.end.min(stretch.less(Stretch::BESIDE));
+            for j in places.start - Stretch::BESIDE..end - Stretch::BESIDE {
+                let legs = [first.get(j + 2), last.get(j + 2)];
+                let [p, q] = [binormals.get(j + 1), binormals.get(j + 2)];
+                let s = Situation::of_scaled(legs, chords.get(j + 2), p, q);
+                doubts[j + 2] = doubtful(&s, calls[j + 2].bits());
+                any |= doubts[j + 2];
             }
-            (found, applicable)
-        };
-        let n = polygon.segments();
-        if n < 2 * BLOCK {
-            return look(&mut Window::default(), 0..n);
         }
-        let block = |window: &mut Window, k: usize| look(window, k * BLOCK..n.min((k + 1) * BLOCK));
-        let blocks = (0..n.div_ceil(BLOCK)).into_par_iter().map_init(Window::default, block);
-        let nothing = || (Vec::new(), [0; 6]);
-        blocks.reduce(nothing, |(mut found, mut applicable), after| {
-            found.extend(after.0);
-            add(&mut applicable, after.1);
-            (found, applicable)
-        })
-    }
-}
-
-/// Adds counts to others.
-fn add(sums: &mut [usize; 6], counts: [usize; 6]) {
-    sums.iter_mut().zip(counts).for_each(|(sum, count)| *sum += count);
-}
-
-/// Adds the segments at some of a stretch's own places that fail with the end legs `first, last`.
-pub(crate) fn faults_of_stretch(
-    polygon: &DataPolygon,
-    tolerances: &Tolerances,
-    stretch: &Stretch,
-    calls: &StretchCalls,
-    [first, last]: [&Lanes; 2],
-    places: Range<usize>,
-    found: &mut Vec<(usize, Faults)>,
-) {
-    let (chords, binormals) = (stretch.chords(), stretch.binormals());
-    // Where sizes are not ordinary every segment is decided by itself.
-    let mut doubts = [1; Stretch::ROOM];
-    let mut any = 1;
-    if stretch.is_ordinary() {
-        any = 0;
-        let end = places.end.min(stretch.less(Stretch::BESIDE));
-        for j in places.start - Stretch::BESIDE..end - Stretch::BESIDE {
-            let legs = [first.get(j + 2), last.get(j + 2)];
-            let [p, q] = [binormals.get(j + 1), binormals.get(j + 2)];
-            let s = Situation::of_scaled(legs, chords.get(j + 2), p, q);
-            doubts[j + 2] = doubtful(&s, calls[j + 2].bits());
-            any |= doubts[j + 2];
+        if any == 0 {
+            return;
+        }
+        for j in places.filter(|&j| doubts[j] != 0) {
+            let faults = self.faults_at(stretch, calls[j], [first.get(j), last.get(j)], j);
+            if !faults.is_empty() {
+                found.push((stretch.segment(self.polygon, j), faults));
+            }
         }
     }
-    if any == 0 {
-        return;
-    }
-    for j in places.filter(|&j| doubts[j] != 0) {
-        let around = [j - 1, j, j + 1].map(|j| stretch.directions().get(j));
-        let legs = [first.get(j), last.get(j)];
+
+    /// What fails on the segment at one of a stretch's own places.
+    pub(crate) fn faults_at(
+        &self,
+        stretch: &Stretch,
+        calls: Calls,
+        legs: [DVec3; 2],
+        j: usize,
+    ) -> Faults {
+        if calls.is_empty() {
+            return Faults::default();
+        }
+        let (chords, binormals) = (stretch.chords(), stretch.binormals());
         let s = Situation::new(legs, chords.get(j), binormals.get(j - 1), binormals.get(j));
-        let i = stretch.segment(polygon, j);
-        let cones = || Cones::new(polygon, i, around, calls[j], tolerances);
-        let faults = faults(&s, calls[j], cones);
-        if !faults.is_empty() {
-            found.push((i, faults));
-        }
+        faults(&s, calls, || {
+            let around = [j - 1, j, j + 1].map(|j| stretch.directions().get(j));
+            let segment = stretch.segment(self.polygon, j);
+            Cones::new(self.polygon, segment, around, calls, &self.tolerances)
+        })
     }
 }
 
@@ -189,7 +188,10 @@ mod tests {
                 let alone = (0..n).map(|i| (i, checker.faults(i, legs(i))));
                 assert!(alone.filter(|fault| !fault.1.is_empty()).eq(faults.iter().copied()));
                 assert_eq!(faults, checker.all_faults(legs));
-                assert_eq!((faults.clone(), checker.applicable(0..n)), local.look(legs));
+                assert_eq!(
+                    (faults.clone(), checker.applicable(0..n)),
+                    local.in_windows().look(legs)
+                );
                 failed = faults.iter().fold(failed, |all, &(_, faults)| all.and(faults));
             }
         }

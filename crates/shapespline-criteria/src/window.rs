@@ -1,11 +1,11 @@
 //! The checker of one window of a curve after another, for searches that come back to the same places.
 
-use std::ops::Range;
+use std::{cell::Cell, ops::Range};
 
 use rayon::prelude::*;
 use shapespline_geometry::{DVec3, DataPolygon, Lanes, Stretch};
 
-use crate::{Calls, Checker, Faults, StretchCalls, Tolerances, stretch::faults_of_stretch};
+use crate::{Calls, Faults, StretchCalls, StretchChecker};
 
 /// Windows that are kept: a change of tension is felt over some 60 segments, in two windows or three.
 const KEPT: usize = 4;
@@ -13,37 +13,112 @@ const KEPT: usize = 4;
 /// Segments are checked in parallel in blocks of this many.
 pub(crate) const BLOCK: usize = 4096;
 
-/// A [`Checker`] that asks of many segments at once, and keeps what it read of the polygon last.
-/// Verdicts are to the bit those of [`Checker::faults`].
+/// The shape criteria of a polygon, asked of many segments at once by one who comes back to the same
+/// ones: what was read of the polygon last is kept. Verdicts are to the bit those of
+/// [`Checker::faults`](crate::Checker::faults).
 #[derive(Debug, Clone)]
-pub struct WindowChecker<'c, 'p> {
-    checker: &'c Checker<'p>,
+pub struct WindowChecker<'a> {
+    local: StretchChecker<'a>,
+    /// What each segment calls for, if somebody knows.
+    calls: Option<&'a [Calls]>,
     kept: [Option<Box<Window>>; KEPT],
+    /// Scratch.
+    found: Vec<(usize, Faults)>,
 }
 
-impl<'c, 'p> WindowChecker<'c, 'p> {
-    pub(crate) fn new(checker: &'c Checker<'p>) -> Self {
-        Self { checker, kept: Default::default() }
+thread_local! {
+    /// Windows for the next curve of this thread: to make one costs what checking a short curve does.
+    static SPARE: Cell<Vec<Box<Window>>> = const { Cell::new(Vec::new()) };
+}
+
+impl Drop for WindowChecker<'_> {
+    fn drop(&mut self) {
+        let mut spare = SPARE.take();
+        spare.extend(self.kept.iter_mut().filter_map(Option::take));
+        spare.truncate(KEPT);
+        SPARE.set(spare);
+    }
+}
+
+/// A window on nothing yet.
+fn new_window() -> Box<Window> {
+    let mut spare = SPARE.take();
+    let mut window = spare.pop().unwrap_or_default();
+    SPARE.set(spare);
+    window.number = usize::MAX;
+    window
+}
+
+impl<'a> WindowChecker<'a> {
+    pub(crate) fn new(local: StretchChecker<'a>, calls: Option<&'a [Calls]>) -> Self {
+        Self { local, calls, kept: Default::default(), found: Vec::new() }
     }
 
-    /// As [`Checker::all_faults`].
+    /// The same criteria, nothing kept yet: for another thread.
+    #[must_use]
+    pub fn another(&self) -> Self {
+        Self::new(self.local, self.calls)
+    }
+
+    /// The polygon.
+    #[must_use]
+    pub fn polygon(&self) -> &'a DataPolygon {
+        self.local.polygon()
+    }
+
+    /// The segments that fail, ascending. Cost O(N), on all threads for long curves.
     pub fn all_faults<L>(&mut self, legs: L) -> Vec<(usize, Faults)>
     where
         L: Fn(usize) -> [DVec3; 2] + Sync,
     {
-        let n = self.checker.calls().len();
-        let mut found = Vec::new();
+        let faults = |windows: &mut Self, segments: Range<usize>, found: &mut Vec<_>| {
+            windows.faults(segments, &legs, found);
+        };
+        self.in_blocks(faults, |all, found| all.extend(found))
+    }
+
+    /// The segments that fail, ascending, and how many segments each criterion applies to: all that a
+    /// report on a curve without faults says. Cost O(N), on all threads for long curves.
+    pub fn look<L>(&mut self, legs: L) -> (Vec<(usize, Faults)>, [usize; 6])
+    where
+        L: Fn(usize) -> [DVec3; 2] + Sync,
+    {
+        type Seen = (Vec<(usize, Faults)>, [usize; 6]);
+        let look = |windows: &mut Self, segments: Range<usize>, (found, applicable): &mut Seen| {
+            for part in parts(segments) {
+                let window = windows.window(part.start / Stretch::OWN);
+                add(applicable, StretchChecker::applicable(&window.stretch, &window.calls));
+                windows.faults_of_part(part, &legs, found);
+            }
+        };
+        self.in_blocks(look, |(all, sums), (found, applicable)| {
+            all.extend(found);
+            add(sums, applicable);
+        })
+    }
+
+    /// What is found in the segments of the polygon, of a long one by blocks on all threads.
+    fn in_blocks<T: Default + Send>(
+        &mut self,
+        find: impl Fn(&mut Self, Range<usize>, &mut T) + Sync,
+        join: impl Fn(&mut T, T) + Sync,
+    ) -> T {
+        let n = self.local.polygon().segments();
+        let mut all = T::default();
         if n < 2 * BLOCK {
-            self.faults(0..n, legs, &mut found);
-            return found;
+            find(self, 0..n, &mut all);
+            return all;
         }
-        let block = |windows: &mut WindowChecker<'_, '_>, k: usize| {
-            let mut found = Vec::new();
-            windows.faults(k * BLOCK..n.min((k + 1) * BLOCK), &legs, &mut found);
+        let block = |windows: &mut Self, k: usize| {
+            let mut found = T::default();
+            find(windows, k * BLOCK..n.min((k + 1) * BLOCK), &mut found);
             found
         };
         let blocks = (0..n.div_ceil(BLOCK)).into_par_iter();
-        blocks.map_init(|| Self::new(self.checker), block).flatten_iter().collect()
+        blocks.map_init(|| self.another(), block).reduce(T::default, |mut all, found| {
+            join(&mut all, found);
+            all
+        })
     }
 
     /// Adds those of some segments that fail with the end legs that `legs` says, ascending.
@@ -64,11 +139,22 @@ impl<'c, 'p> WindowChecker<'c, 'p> {
         segments: Range<usize>,
         legs: impl Fn(usize) -> [DVec3; 2],
     ) -> Option<usize> {
-        let mut found = Vec::new();
-        parts(segments).find_map(|part| {
+        let mut found = std::mem::take(&mut self.found);
+        found.clear();
+        let first = parts(segments).find_map(|part| {
             self.faults_of_part(part, &legs, &mut found);
             found.first().map(|fault| fault.0)
-        })
+        });
+        self.found = found;
+        first
+    }
+
+    /// What fails on one segment with some end legs.
+    pub fn faults_at(&mut self, segment: usize, legs: [DVec3; 2]) -> Faults {
+        let local = self.local;
+        let window = self.window(segment / Stretch::OWN);
+        let j = segment % Stretch::OWN + Stretch::BESIDE;
+        local.faults_at(&window.stretch, window.calls[j], legs, j)
     }
 
     fn faults_of_part(
@@ -77,23 +163,32 @@ impl<'c, 'p> WindowChecker<'c, 'p> {
         legs: &impl Fn(usize) -> [DVec3; 2],
         found: &mut Vec<(usize, Faults)>,
     ) {
-        let (checker, number) = (self.checker, part.start / Stretch::OWN);
-        let window = self.kept[number % KEPT].get_or_insert_with(Box::default);
-        if window.number != number {
-            let own = window.load(checker.polygon(), number);
-            window.calls[window.stretch.own()].copy_from_slice(&checker.calls()[own]);
-        }
-        window.faults(checker.polygon(), &checker.tolerances(), part, legs, found);
+        let local = self.local;
+        self.window(part.start / Stretch::OWN).faults(&local, part, legs, found);
     }
+
+    /// The window of a number.
+    fn window(&mut self, number: usize) -> &mut Window {
+        let window = self.kept[number % KEPT].get_or_insert_with(new_window);
+        if window.number != number {
+            window.load(&self.local, self.calls, number);
+        }
+        window
+    }
+}
+
+/// Adds counts to others.
+fn add(sums: &mut [usize; 6], counts: [usize; 6]) {
+    sums.iter_mut().zip(counts).for_each(|(sum, count)| *sum += count);
 }
 
 /// As many segments of a polygon as a stretch has, from a multiple of that number on, with what they
 /// call for and the end legs of a curve.
 #[derive(Debug, Clone)]
-pub(crate) struct Window {
+struct Window {
     number: usize,
-    pub(crate) stretch: Stretch,
-    pub(crate) calls: StretchCalls,
+    stretch: Stretch,
+    calls: StretchCalls,
     first: Lanes,
     last: Lanes,
 }
@@ -112,20 +207,22 @@ impl Default for Window {
 }
 
 impl Window {
-    /// Reads the window of a number, all but what it calls for. Returns its segments.
-    pub(crate) fn load(&mut self, polygon: &DataPolygon, number: usize) -> Range<usize> {
+    /// Reads the window of a number.
+    fn load(&mut self, local: &StretchChecker<'_>, calls: Option<&[Calls]>, number: usize) {
         let start = number * Stretch::OWN;
-        let own = start..polygon.segments().min(start + Stretch::OWN);
+        let own = start..local.polygon().segments().min(start + Stretch::OWN);
         self.number = number;
-        self.stretch.load(polygon, own.clone());
-        own
+        self.stretch.load(local.polygon(), own.clone());
+        match calls {
+            Some(calls) => self.calls[self.stretch.own()].copy_from_slice(&calls[own]),
+            None => local.calls(&self.stretch, &mut self.calls),
+        }
     }
 
     /// Adds those of some segments in the window that fail with the end legs that `legs` says.
-    pub(crate) fn faults(
+    fn faults(
         &mut self,
-        polygon: &DataPolygon,
-        tolerances: &Tolerances,
+        local: &StretchChecker<'_>,
         segments: Range<usize>,
         legs: &impl Fn(usize) -> [DVec3; 2],
         found: &mut Vec<(usize, Faults)>,
@@ -138,12 +235,12 @@ impl Window {
             first.set(j, a);
             last.set(j, c);
         }
-        faults_of_stretch(polygon, tolerances, stretch, calls, [first, last], places, found);
+        local.faults_among(places, stretch, calls, [first, last], found);
     }
 }
 
 /// The parts of some segments that lie in one window each.
-pub(crate) fn parts(segments: Range<usize>) -> impl Iterator<Item = Range<usize>> {
+fn parts(segments: Range<usize>) -> impl Iterator<Item = Range<usize>> {
     let Range { start, end } = segments;
     let windows = start / Stretch::OWN..end.div_ceil(Stretch::OWN);
     windows.map(move |k| {
@@ -158,7 +255,7 @@ mod tests {
     use shapespline_geometry::{Boundary, Parametrization};
 
     use super::*;
-    use crate::{Criteria, StretchChecker};
+    use crate::{Checker, Criteria, Tolerances};
 
     /// Whatever windows were kept before, and wherever ranges begin and end.
     #[test]
@@ -190,8 +287,8 @@ mod tests {
             assert!(all.len() > n / 50 && all.len() < n);
             assert_eq!(windows.all_faults(legs), all);
             assert_eq!(checker.all_faults(legs), all);
-            let (found, applicable) =
-                StretchChecker::new(&polygon, criteria, tolerances).look(legs);
+            let local = StretchChecker::new(&polygon, criteria, tolerances);
+            let (found, applicable) = local.in_windows().look(legs);
             assert_eq!((found, applicable), (all, checker.applicable(0..n)));
             for (start, length) in
                 [(0, 1), (63, 1), (60, 10), (700, 200), (3, 61), (n - 1, 1), (5, 0)]
@@ -200,8 +297,11 @@ mod tests {
                 let (expected, mut found) = (alone(segments.clone()), Vec::new());
                 windows.faults(segments.clone(), legs, &mut found);
                 assert_eq!(found, expected);
-                let any = windows.any_fault(segments, legs);
+                let any = windows.any_fault(segments.clone(), legs);
                 assert_eq!(any, expected.first().map(|fault| fault.0));
+                for i in segments.clone() {
+                    assert_eq!(windows.faults_at(i, legs(i)), checker.faults(i, legs(i)));
+                }
             }
         }
     }

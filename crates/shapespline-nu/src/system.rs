@@ -18,6 +18,7 @@ pub(crate) struct NuSystem<'a> {
 }
 
 impl NuSystem<'_> {
+    #[inline(always)]
     fn interior(&self, before: usize, after: usize, tension: f64) -> Row {
         let (h0, h1) = (self.polygon.spacing(before), self.polygon.spacing(after));
         // Halves first: the sum of two spacings can overflow where neither does.
@@ -25,8 +26,13 @@ impl NuSystem<'_> {
         let (lower, upper) = (0.5 * h1 * reciprocal, 0.5 * h0 * reciprocal);
         let velocities =
             self.polygon.chord(before) * (lower / h0) + self.polygon.chord(after) * (upper / h1);
+        let diagonal = Self::diagonal(lower, upper, tension);
+        Row { lower, diagonal, upper, right: velocities * 3.0 }
+    }
+
+    fn diagonal(lower: f64, upper: f64, tension: f64) -> f64 {
         let pull = if tension > 0.0 { 0.5 * (lower * upper).sqrt() * tension } else { 0.0 };
-        Row { lower, diagonal: 2.0 + pull, upper, right: velocities * 3.0 }
+        2.0 + pull
     }
 
     /// End row: `(1 + ν) q = D` (3.8), or zero curvature `(2 + ½ν) q + q' = 3L/h` (3.10, E2).
@@ -86,9 +92,55 @@ impl TensionSystem for NuSystem<'_> {
         rows.push(node);
     }
 
+    /// Tension changes nothing but the diagonal.
     #[inline]
-    fn legs(&self, segment: usize, tangents: [DVec3; 2]) -> [DVec3; 2] {
+    fn renew(&self, i: usize, row: &mut Row) {
+        if !self.is_cyclic() && (i == 0 || i == self.polygon.segments()) {
+            *row = self.row(i);
+        } else {
+            row.diagonal = Self::diagonal(row.lower, row.upper, self.tension[i]);
+        }
+    }
+
+    #[inline]
+    fn legs(&self, segment: usize, [first, last]: [DVec3; 2]) -> [DVec3; 2] {
         let third = self.polygon.spacing(segment) / 3.0;
-        tangents.map(|q| q * third)
+        [first * third, last * third]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use shapespline_geometry::{Boundary, Parametrization};
+
+    use super::*;
+
+    #[test]
+    fn a_row_is_renewed_as_it_would_be_made() {
+        let ends = Boundary::Tangents { start: DVec3::new(1.0, 2.0, -1.0), end: DVec3::Y };
+        for boundary in [Boundary::ZeroCurvature, Boundary::Periodic, ends] {
+            let at = |k: usize| {
+                DVec3::new((0.3 * (k * k) as f64).sin(), (1.7 * k as f64).cos(), k as f64)
+            };
+            let mut points: Vec<DVec3> = (0..9).map(at).collect();
+            points[8] = if boundary == Boundary::Periodic { points[0] } else { points[8] };
+            let polygon = DataPolygon::new(points, &Parametrization::Chordal, boundary).unwrap();
+            let mut system = NuSystem { polygon: &polygon, tension: vec![0.0; polygon.nodes()] };
+            let mut kept: Vec<Row> = (0..system.count()).map(|i| system.row(i)).collect();
+            for (node, tension) in
+                [(3, 2.0), (0, 0.7), (system.count() - 1, 9.0), (3, 0.0), (4, 1e9)]
+            {
+                let mut rows = Vec::new();
+                system.set_tension(node, tension, &mut rows);
+                for i in rows {
+                    system.renew(i, &mut kept[i]);
+                }
+                // Also the rows that were not named.
+                for (i, kept) in kept.iter().enumerate() {
+                    assert_eq!(*kept, system.row(i), "{boundary:?}, row {i}");
+                }
+            }
+        }
     }
 }

@@ -17,7 +17,7 @@ use shapespline_geometry::{DVec3, DataPolygon};
 /// 2. **Say how tension makes tangents.** If the tangents solve a tridiagonal system, write its row
 ///    `i`, divided so that it has no unit and is strictly diagonally dominant, as
 ///    [`shapespline_banded::Rows`], and implement [`crate::TensionSystem`]; [`crate::SolvedFamily`]
-///    is then the family (`NuSystem` and `MannisSystem` are 70 lines each). If a tangent depends on
+///    is then the family (`NuSystem` and `MannisSystem` are some 100 lines each). If a tangent depends on
 ///    its neighbours only, implement this trait itself (`Handles` of Catmull–Rom).
 /// 3. **Say where pulls are equal** ([`TensionFamily::weight`]) if equal tension does not already
 ///    make the legs of neighbouring nodes alike.
@@ -115,6 +115,20 @@ pub trait TensionFamily: Sync {
         changes: &[(usize, f64)],
         touched: &mut Vec<Range<usize>>,
     ) -> Result<(), Self::Error>;
+
+    /// Fills `legs` with the end legs of some segments as they would be, up to rounding, with other
+    /// tension at some nodes (as for [`TensionFamily::set_tension`]); nothing else changes. False where
+    /// that is not much cheaper than to set it.
+    ///
+    /// A search that does without is as good, and slower.
+    fn legs_under(
+        &mut self,
+        _changes: &[(usize, f64)],
+        _segments: Range<usize>,
+        _legs: &mut Vec<[DVec3; 2]>,
+    ) -> bool {
+        false
+    }
 
     /// Solves everything anew from the present tensions, trusting nothing stored.
     ///

@@ -19,13 +19,17 @@
 mod error;
 mod family;
 mod interpolant;
+mod lower;
 mod many;
 mod options;
 mod outcome;
 mod pattern;
+mod raise;
 mod relax;
 mod runs;
 mod search;
+mod solved;
+mod state;
 mod system;
 mod tension;
 
@@ -37,5 +41,6 @@ pub use options::{SearchOptions, Strategy};
 pub use outcome::{Diagnostics, Fit, Outcome, Phase, Status, Step};
 pub use pattern::Pattern;
 pub use search::{search, search_and_report};
-pub use system::{SolvedFamily, TensionSystem, solve_legs};
+pub use solved::SolvedFamily;
+pub use system::{TensionSystem, solve_legs};
 pub use tension::{Tension, check_stored, per_point};

@@ -20,7 +20,30 @@ pub struct Collection<'a> {
 }
 
 impl Collection<'_> {
-    fn polygon(&self, k: usize, points: &[DVec3]) -> Result<DataPolygon, InputError> {
+    /// Sees to it that given parameters are one a point.
+    ///
+    /// # Errors
+    /// Given parameters that are not.
+    pub fn check(&self) -> Result<(), InputError> {
+        let Parametrization::Given(all) = &self.parametrization else { return Ok(()) };
+        let rows = &self.points;
+        let expected = if rows.is_empty() { 0 } else { rows.range(rows.len() - 1).end };
+        if all.len() == expected {
+            return Ok(());
+        }
+        let (argument, found, per) = ("parameters", all.len(), "one for each point");
+        Err(InputError::Length { argument, expected, found, per })
+    }
+
+    /// Fits curve `k` of a collection that was [checked](Self::check).
+    ///
+    /// # Errors
+    /// Points that make no polygon; those of `fit`.
+    pub fn fit<C>(
+        &self,
+        k: usize,
+        fit: impl FnOnce(DataPolygon) -> Result<C, FitError>,
+    ) -> Result<C, FitError> {
         let given;
         let parametrization = match &self.parametrization {
             // Each curve has its part; a whole of another length is refused before.
@@ -30,8 +53,8 @@ impl Collection<'_> {
             }
             chosen => chosen,
         };
-        let points = points.to_vec();
-        DataPolygon::with_dimension(points, self.dimension, parametrization, self.boundary)
+        let points = self.points.row(k).to_vec();
+        fit(DataPolygon::with_dimension(points, self.dimension, parametrization, self.boundary)?)
     }
 }
 
@@ -48,13 +71,6 @@ pub fn fit_many<C: Send>(
     threads: Option<usize>,
     fit: impl Fn(DataPolygon) -> Result<C, FitError> + Sync,
 ) -> Result<Vec<Result<C, FitError>>, InputError> {
-    let rows = &collection.points;
-    let expected = if rows.is_empty() { 0 } else { rows.range(rows.len() - 1).end };
-    if let Parametrization::Given(all) = &collection.parametrization
-        && all.len() != expected
-    {
-        let (argument, found, per) = ("parameters", all.len(), "one for each point");
-        return Err(InputError::Length { argument, expected, found, per });
-    }
-    rows.map(threads, |k, points| fit(collection.polygon(k, points)?))
+    collection.check()?;
+    collection.points.map(threads, |k, _| collection.fit(k, &fit))
 }

@@ -29,6 +29,12 @@ impl Strategy {
         ("reduction", Self::Reduction),
     ];
 
+    /// Whether a round of raising looks first at the segments around what it raises, and at all others
+    /// once those keep their shape. The papers' rules look at all of them in every round.
+    pub(crate) fn looks_first(self) -> bool {
+        matches!(self, Self::Growth | Self::Fairest)
+    }
+
     /// The name users write.
     #[must_use]
     pub fn name(self) -> &'static str {

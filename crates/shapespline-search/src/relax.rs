@@ -1,38 +1,34 @@
 //! Lowering tension again: growth overshoots, and what is not needed is given back.
 //!
-//! Every connected run of tension is scaled by a factor of its own, found by bisection with a solve
-//! and an exact check at each step; a factor that breaks a criterion anywhere is not taken. One run
-//! after the other: a change dies away as `2^{−k}` over `k` nodes, so each step solves and checks a
-//! neighbourhood that the step before left in the processor's cache. The run with the most tension
-//! goes first, and ties within reach of each other go together with one factor: the order comes from
-//! the data, not from the direction in which they are numbered, so reversed data give the reversed
-//! curve.
+//! Every connected run of tension is scaled by a factor of its own, found by bisection
+//! ([`crate::lower`]). One run after the other: a change dies away as `2^{−k}` over `k` nodes, so each
+//! step solves and checks a neighbourhood only. The run with the most tension goes first, and ties
+//! within reach of each other go together with one factor: the order comes from the data, not from the
+//! direction in which they are numbered, so reversed data give the reversed curve.
 
 use crate::{
     Phase, TensionFamily,
+    lower::Nodes,
     runs::{Run, runs},
-    search::State,
+    state::State,
 };
 
 /// Nodes over which a change of tension falls below rounding.
 const REACH: usize = 64;
-
-/// No run can be lowered by more than this part of it when relaxation ends.
-const RESOLUTION: f64 = 0.01;
 
 /// Limit of sweeps over the runs that can still be lowered. Two or three are usual; two runs that free
 /// each other bit by bit have taken 32.
 const SWEEPS: usize = 256;
 
 /// Lowers the tension of a curve without faults as far as that leaves it without faults.
-pub(crate) fn relax<F: TensionFamily>(state: &mut State<'_, '_, F>) -> Result<(), F::Error> {
+pub(crate) fn relax<F: TensionFamily>(state: &mut State<'_, F>) -> Result<(), F::Error> {
     let mut all = runs(state.family.tension(), state.closed());
     // Those that may be lowered: a run that was, is open again once another within reach has changed.
     let mut open = vec![true; all.len()];
     for sweep in 0..SWEEPS {
         if sweep > 0 {
             for (open, run) in open.iter_mut().zip(&all) {
-                *open = *open && !state.stopped && can_be_lowered(state, run)?;
+                *open = *open && !state.stopped && Nodes::of(state, [run]).can_be_lowered(state)?;
             }
         }
         let changed = sweep_over(state, &all, &mut open)?;
@@ -53,7 +49,7 @@ pub(crate) fn relax<F: TensionFamily>(state: &mut State<'_, '_, F>) -> Result<()
 /// Lowers the open runs, the heaviest first, and says which are open then. Returns the number of nodes
 /// that changed.
 fn sweep_over<F: TensionFamily>(
-    state: &mut State<'_, '_, F>,
+    state: &mut State<'_, F>,
     all: &[Run],
     open: &mut [bool],
 ) -> Result<usize, F::Error> {
@@ -66,8 +62,8 @@ fn sweep_over<F: TensionFamily>(
             continue;
         }
         let group = tied(state, all, open, r);
-        let nodes = group.iter().flat_map(|&g| nodes_of(state, &all[g])).collect();
-        let lowered = lower(state, &nodes, group.len() == all.len())?;
+        let mut nodes = Nodes::of(state, group.iter().map(|&g| &all[g]));
+        let lowered = nodes.lower(state, group.len() == all.len())?;
         // Of several with one factor, one may have held back the others.
         group.iter().for_each(|&g| again[g] = group.len() > 1);
         if lowered > 0 {
@@ -83,18 +79,10 @@ fn sweep_over<F: TensionFamily>(
     Ok(changed)
 }
 
-/// Nodes of runs, with the tension they have.
-type Nodes = Vec<(usize, f64)>;
-
-fn nodes_of<F: TensionFamily>(state: &State<'_, '_, F>, run: &Run) -> Nodes {
-    let tension = state.family.tension();
-    run.nodes(tension.len()).map(|i| (i, tension[i])).collect()
-}
-
 /// Run `r` and the open runs that tie with it within reach, or within reach of those; they are open no
 /// longer.
 fn tied<F: TensionFamily>(
-    state: &State<'_, '_, F>,
+    state: &State<'_, F>,
     all: &[Run],
     open: &mut [bool],
     r: usize,
@@ -118,7 +106,7 @@ fn tied<F: TensionFamily>(
 }
 
 /// Nodes between two runs, the shorter way round in closed data.
-fn gap<F: TensionFamily>(state: &State<'_, '_, F>, a: &Run, b: &Run) -> usize {
+fn gap<F: TensionFamily>(state: &State<'_, F>, a: &Run, b: &Run) -> usize {
     let n = state.family.tension().len();
     let forward = |from: &Run, to: &Run| (to.first + 2 * n - from.first - from.length + 1) % n;
     if state.closed() {
@@ -132,7 +120,7 @@ fn gap<F: TensionFamily>(state: &State<'_, '_, F>, a: &Run, b: &Run) -> usize {
 
 /// The other runs within reach of run `r`.
 fn neighbours<'a, F: TensionFamily>(
-    state: &'a State<'_, '_, F>,
+    state: &'a State<'_, F>,
     all: &'a [Run],
     r: usize,
 ) -> impl Iterator<Item = usize> + 'a {
@@ -151,78 +139,4 @@ fn neighbours<'a, F: TensionFamily>(
             .map_while(move |k| step(k, forward))
             .take_while(move |&o| gap(state, &all[r], &all[o]) <= REACH)
     })
-}
-
-/// Lowers nodes by a common factor, found by bisection. Returns the number of nodes that changed.
-///
-/// `all`: whether no other node has tension.
-fn lower<F: TensionFamily>(
-    state: &mut State<'_, '_, F>,
-    nodes: &Nodes,
-    all: bool,
-) -> Result<usize, F::Error> {
-    state.relaxations += 1;
-    // No tension at all comes first: growth often raises more nodes than it had to.
-    if !(all && state.plain_fails) && keeps_shape(state, nodes, 0.0)? {
-        return Ok(nodes.len());
-    }
-    let (mut breaks, mut keeps) = (0.0, 1.0);
-    while keeps - breaks > RESOLUTION * keeps && !state.stopped {
-        let trial = 0.5 * (breaks + keeps);
-        if trial <= breaks || trial >= keeps {
-            break;
-        }
-        if keeps_shape(state, nodes, trial)? {
-            keeps = trial;
-        } else {
-            breaks = trial;
-        }
-    }
-    scale(state, nodes, keeps)?;
-    Ok(if keeps < 1.0 { nodes.len() } else { 0 })
-}
-
-/// Whether a run could be lowered by the resolution, all others left as they are.
-fn can_be_lowered<F: TensionFamily>(
-    state: &mut State<'_, '_, F>,
-    run: &Run,
-) -> Result<bool, F::Error> {
-    let nodes = nodes_of(state, run);
-    let keeps = keeps_shape(state, &nodes, 1.0 - RESOLUTION)?;
-    scale(state, &nodes, 1.0)?;
-    Ok(keeps)
-}
-
-/// Sets nodes to a factor of their tension; whether that leaves the curve without faults.
-fn keeps_shape<F: TensionFamily>(
-    state: &mut State<'_, '_, F>,
-    nodes: &Nodes,
-    factor: f64,
-) -> Result<bool, F::Error> {
-    let changes = scaled(state, nodes, factor);
-    state.try_tension(&changes)
-}
-
-/// Sets nodes to a factor of their tension that is known to leave no faults.
-fn scale<F: TensionFamily>(
-    state: &mut State<'_, '_, F>,
-    nodes: &Nodes,
-    factor: f64,
-) -> Result<(), F::Error> {
-    let changes = scaled(state, nodes, factor);
-    state.return_to(&changes)
-}
-
-/// The changes that bring nodes to a factor of their tension, ascending.
-fn scaled<F: TensionFamily>(
-    state: &State<'_, '_, F>,
-    nodes: &Nodes,
-    factor: f64,
-) -> Vec<(usize, f64)> {
-    let present = state.family.tension();
-    let mut changes = Vec::with_capacity(nodes.len());
-    let scaled = nodes.iter().map(|&(i, tension)| (i, tension * factor));
-    changes.extend(scaled.filter(|&(i, tension)| present[i] != tension));
-    changes.sort_unstable_by_key(|c| c.0);
-    changes
 }

@@ -134,8 +134,7 @@ impl TensionSpline {
         options: &SearchOptions,
         monitor: &mut dyn FnMut(&Step) -> ControlFlow<()>,
     ) -> Result<Fit<Self>, FitError> {
-        let none = vec![[1.0; 2]; polygon.segments()];
-        let mut family = SolvedFamily::new(MannisSystem::new(&polygon, none))?;
+        let mut family = SolvedFamily::new(MannisSystem::without_tension(&polygon))?;
         let (outcome, report) = search_and_report(&mut family, &polygon, options, monitor)?;
         let (legs, system) = family.finish();
         let (slopes, tension) = system.into_parts();

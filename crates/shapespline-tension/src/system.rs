@@ -15,6 +15,8 @@ pub(crate) struct MannisSystem<'a> {
     slopes: Vec<[f64; 2]>,
     /// `1/λ − 1` at each distinct node, of the smaller `λ` beside it.
     tension: Vec<f64>,
+    /// Whether there is one `λ` on both sides of every node.
+    even: bool,
 }
 
 impl<'a> MannisSystem<'a> {
@@ -31,7 +33,15 @@ impl<'a> MannisSystem<'a> {
             1.0 / f64::min(before, after) - 1.0
         };
         let tension = (0..polygon.nodes()).map(at).collect();
-        Self { polygon, slopes, tension }
+        let meet = |pair: &[[f64; 2]]| pair[0][1] == pair[1][0];
+        let even = slopes.windows(2).all(meet) && (slopes[n - 1][1] == slopes[0][0]);
+        Self { polygon, slopes, tension, even }
+    }
+
+    /// The system without tension: every `λ` is one.
+    pub(crate) fn without_tension(polygon: &'a DataPolygon) -> Self {
+        let (slopes, tension) = (vec![[1.0; 2]; polygon.segments()], vec![0.0; polygon.nodes()]);
+        Self { polygon, slopes, tension, even: true }
     }
 
     /// `[λ⁰, λ¹]` of each segment, and the tension of each distinct node.
@@ -39,18 +49,21 @@ impl<'a> MannisSystem<'a> {
         (self.slopes, self.tension)
     }
 
+    #[inline(always)]
     fn interior(&self, before: usize, after: usize) -> Row {
         let (h0, h1) = (self.polygon.spacing(before), self.polygon.spacing(after));
-        let ([far0, near0], [near1, far1]) = (self.slopes[before], self.slopes[after]);
-        // w = 1/(1+r) and 1−w = 1/(1+1/r): neither is lost where r overflows or vanishes.
-        let ratio = near0 / near1;
-        let r = (h0 / h1) * ratio * ratio;
-        let (w, v) = (1.0 / (1.0 + r), 1.0 / (1.0 + 1.0 / r));
-        let (lower, upper) = (w * far0, v * far1);
+        let [w, v] = weights([h0, h1], [self.slopes[before][1], self.slopes[after][0]]);
         let velocities =
             self.polygon.chord(before) * (w / h0) + self.polygon.chord(after) * (v / h1);
-        let diagonal = w * (3.0 - far0) + v * (3.0 - far1);
+        let [lower, diagonal, upper] = self.coefficients([before, after], [w, v]);
         Row { lower, diagonal, upper, right: velocities * 3.0 }
+    }
+
+    /// The left-hand side of an interior row.
+    #[inline]
+    fn coefficients(&self, [before, after]: [usize; 2], [w, v]: [f64; 2]) -> [f64; 3] {
+        let (far0, far1) = (self.slopes[before][0], self.slopes[after][1]);
+        [w * far0, w * (3.0 - far0) + v * (3.0 - far1), v * far1]
     }
 
     /// End row: `T = D`, or no second derivative, `(3 − λ) T + λ T' = 3L/h`, with the `λ` of the
@@ -64,6 +77,21 @@ impl<'a> MannisSystem<'a> {
             }
         }
     }
+}
+
+/// `w = 1/(1+r)` and `1−w`, `r = h_{i−1}/h_i (λ¹_{i−1}/λ⁰_i)²`: neither is lost where `r` overflows or
+/// vanishes.
+#[inline]
+fn weights([h0, h1]: [f64; 2], [near0, near1]: [f64; 2]) -> [f64; 2] {
+    if near0 == near1 {
+        // Halves first: the sum of two spacings can overflow where neither does.
+        let reciprocal = 1.0 / (0.5 * h0 + 0.5 * h1);
+        return [0.5 * h1 * reciprocal, 0.5 * h0 * reciprocal];
+    }
+    let ratio = near0 / near1;
+    let r = (h0 / h1) * ratio * ratio;
+    let w = 1.0 / (1.0 + r);
+    [w, if w > 0.0 { r * w } else { 1.0 }]
 }
 
 impl Rows for MannisSystem<'_> {
@@ -110,27 +138,88 @@ impl TensionSystem for MannisSystem<'_> {
         self.tension[node] = tension;
         let lambda = 1.0 / (1.0 + tension);
         let (n, closed) = (self.polygon.segments(), self.polygon.is_closed());
-        // The own row depends on it through the ratio of the two, and next to a natural end.
-        rows.push(node);
+        // The own row depends on it through the ratio of the two, and next to a natural end. Nodes mostly
+        // come one after the other: rows that two of them share are named once.
+        let mut name = |row: usize| {
+            let named = rows.len();
+            if !(named > 0 && rows[named - 1] == row || named > 1 && rows[named - 2] == row) {
+                rows.push(row);
+            }
+        };
         if node > 0 || closed {
             let before = if node > 0 { node - 1 } else { n - 1 };
             self.slopes[before][1] = lambda;
-            rows.push(before);
+            name(before);
         }
+        name(node);
         if node < n {
             self.slopes[node][0] = lambda;
-            rows.push(if closed { (node + 1) % n } else { node + 1 });
+            name(if closed { (node + 1) % n } else { node + 1 });
         }
     }
 
+    /// With one `λ` on both sides of a node, the weights and the right-hand side of its row do not depend
+    /// on it.
     #[inline]
-    fn legs(&self, segment: usize, tangents: [DVec3; 2]) -> [DVec3; 2] {
+    fn renew(&self, i: usize, row: &mut Row) {
+        if !self.even || i == 0 || i == self.polygon.segments() {
+            *row = self.row(i);
+            return;
+        }
+        let spacings = [self.polygon.spacing(i - 1), self.polygon.spacing(i)];
+        let weights = weights(spacings, [1.0; 2]);
+        let [lower, diagonal, upper] = self.coefficients([i - 1, i], weights);
+        *row = Row { lower, diagonal, upper, ..*row };
+    }
+
+    #[inline]
+    fn legs(&self, segment: usize, [first, last]: [DVec3; 2]) -> [DVec3; 2] {
         let third = self.polygon.spacing(segment) / 3.0;
         let [start, end] = self.slopes[segment];
-        [tangents[0] * (third * start), tangents[1] * (third * end)]
+        [first * (third * start), last * (third * end)]
     }
 
     fn weight(&self, node: usize) -> f64 {
         velocity_weight(self.polygon, node)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use shapespline_geometry::{Boundary, Parametrization};
+
+    use super::*;
+
+    #[test]
+    fn a_row_is_renewed_as_it_would_be_made() {
+        let ends = Boundary::Tangents { start: DVec3::new(1.0, 2.0, -1.0), end: DVec3::Y };
+        for boundary in [Boundary::ZeroCurvature, Boundary::Periodic, ends] {
+            let at = |k: usize| {
+                DVec3::new((0.3 * (k * k) as f64).sin(), (1.7 * k as f64).cos(), k as f64)
+            };
+            let mut points: Vec<DVec3> = (0..9).map(at).collect();
+            points[8] = if boundary == Boundary::Periodic { points[0] } else { points[8] };
+            let polygon = DataPolygon::new(points, &Parametrization::Chordal, boundary).unwrap();
+            let uneven = (0..8).map(|i| [1.0, if i == 5 { 0.5 } else { 1.0 }]).collect();
+            for mut system in
+                [MannisSystem::without_tension(&polygon), MannisSystem::new(&polygon, uneven)]
+            {
+                let mut kept: Vec<Row> = (0..system.count()).map(|i| system.row(i)).collect();
+                for (node, tension) in
+                    [(3, 2.0), (0, 0.7), (system.count() - 1, 9.0), (3, 0.0), (4, 1e9)]
+                {
+                    let mut rows = Vec::new();
+                    system.set_tension(node, tension, &mut rows);
+                    for i in rows {
+                        system.renew(i, &mut kept[i]);
+                    }
+                    // Also the rows that were not named.
+                    for (i, kept) in kept.iter().enumerate() {
+                        assert_eq!(*kept, system.row(i), "{boundary:?}, row {i}");
+                    }
+                }
+            }
+        }
     }
 }

@@ -1,0 +1,143 @@
+//! Raising tension until no criterion fails: paper 001, (5.58)–(5.65).
+
+use crate::{Pattern, Phase, SearchOptions, Status, TensionFamily, state::State};
+
+impl<F: TensionFamily> State<'_, F> {
+    /// Raises tension until nothing fails.
+    pub(crate) fn raise(&mut self, options: &SearchOptions) -> Result<Status, F::Error> {
+        let status = loop {
+            if self.faults.is_empty() {
+                break Status::Solved;
+            }
+            if self.stopped {
+                break Status::Interrupted;
+            }
+            if self.iterations >= options.limit() {
+                break Status::IterationLimit;
+            }
+            let (violated, changed) = (self.faults.len(), self.raise_pending(options));
+            self.iterations += 1;
+            if !(options.strategy.looks_first() && self.faults_stay()) {
+                self.set_pending()?;
+            }
+            self.log(Phase::Raise, violated, changed);
+        };
+        if !self.pending.is_empty() {
+            self.set_pending()?;
+        }
+        Ok(status)
+    }
+
+    /// Raises the tension that the faults call for: (5.58)–(5.65), with the index m + k (E4). Returns the
+    /// number of nodes.
+    fn raise_pending(&mut self, options: &SearchOptions) -> usize {
+        let Self { family, faults, pending, nodes, .. } = self;
+        let (n, closed) = (family.tension().len(), self.windows.polygon().is_closed());
+        let node = |at: usize, offset: usize| -> Option<usize> {
+            // Offsets count from −1.
+            if closed {
+                Some((at + n + offset - 1) % n)
+            } else {
+                (at + offset).checked_sub(1).filter(|&i| i < n)
+            }
+        };
+        nodes.clear();
+        let mut equal = Vec::new();
+        for &(segment, faults) in &*faults {
+            let pattern = Pattern::of(faults);
+            let raise = pattern.raise.iter().enumerate().filter(|(_, raise)| **raise);
+            nodes.extend(raise.filter_map(|(offset, _)| node(segment, offset)));
+            if pattern.equal {
+                equal.push(segment);
+            }
+        }
+        nodes.sort_unstable();
+        nodes.dedup();
+        // (5.65): over a run of non-convex coplanar segments the pull is one and the same.
+        let mut levels = Vec::new();
+        for run in consecutive(&equal, closed.then_some(n)) {
+            let run = || run.iter().flat_map(|&m| [m % n, (m + 1) % n]);
+            let pull = |i: usize| tension_under(pending, &**family, i) / family.weight(i);
+            let level = options.raised(run().map(pull).fold(0.0, f64::max));
+            let raised = run().filter(|i| nodes.binary_search(i).is_ok());
+            levels.extend(raised.map(|i| (i, level * family.weight(i))));
+        }
+        for &i in &*nodes {
+            let tension = options.raised(tension_under(pending, &**family, i));
+            set(pending, (i, tension));
+        }
+        levels.into_iter().for_each(|level| set(pending, level));
+        nodes.len()
+    }
+
+    /// Whether segments fail under the pending tensions, where that can be seen without setting them. Those
+    /// around are looked at, the others are as they were, as far as anybody knows.
+    fn faults_stay(&mut self) -> bool {
+        let pending = std::mem::take(&mut self.pending);
+        let around = self.look(&pending);
+        self.pending = pending;
+        let Some(around) = around else { return false };
+        let (legs, start) = (&self.legs, around.start);
+        self.faults.retain(|(i, _)| !around.contains(i));
+        let elsewhere = self.faults.len();
+        self.windows.faults(around, |i| legs[i - start], &mut self.faults);
+        if let Some(&(segment, _)) = self.faults.get(elsewhere) {
+            self.suspect = segment;
+        }
+        if elsewhere > 0 {
+            self.faults.sort_unstable_by_key(|f| f.0);
+        }
+        !self.faults.is_empty()
+    }
+}
+
+/// Maximal runs of consecutive numbers in an ascending list; in a cycle of length `n` the last run
+/// joins the first where they meet (paper 001, (5.63)–(5.64), modulo N by E5).
+fn consecutive(list: &[usize], cycle: Option<usize>) -> Vec<Vec<usize>> {
+    let mut runs: Vec<Vec<usize>> = Vec::new();
+    for &m in list {
+        match runs.last_mut() {
+            Some(run) if run.last() == Some(&(m.wrapping_sub(1))) => run.push(m),
+            _ => runs.push(vec![m]),
+        }
+    }
+    if let Some(n) = cycle
+        && runs.len() > 1
+        && runs[0][0] == 0
+        && list.last() == Some(&(n - 1))
+    {
+        let head = runs.remove(0);
+        if let Some(tail) = runs.last_mut() {
+            tail.extend(head);
+        }
+    }
+    runs
+}
+
+/// The tension of a node, changes that are pending included.
+fn tension_under<F: TensionFamily>(pending: &[(usize, f64)], family: &F, i: usize) -> f64 {
+    let found = pending.binary_search_by_key(&i, |change| change.0);
+    found.map_or_else(|_| family.tension()[i], |at| pending[at].1)
+}
+
+/// Sets the change of a node among others, ascending.
+fn set(changes: &mut Vec<(usize, f64)>, change: (usize, f64)) {
+    match changes.binary_search_by_key(&change.0, |change| change.0) {
+        Ok(at) => changes[at] = change,
+        Err(at) => changes.insert(at, change),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn runs_join_over_the_seam_of_closed_data_only() {
+        assert_eq!(consecutive(&[0, 1, 4, 5, 9], None), [vec![0, 1], vec![4, 5], vec![9]]);
+        assert_eq!(consecutive(&[0, 1, 4, 5, 9], Some(10)), [vec![4, 5], vec![9, 0, 1]]);
+        // Another segment comes after the last one here.
+        assert_eq!(consecutive(&[0, 1, 4, 5, 9], Some(11)), [vec![0, 1], vec![4, 5], vec![9]]);
+        assert_eq!(consecutive(&[0, 1, 2], Some(3)), [vec![0, 1, 2]]);
+    }
+}

@@ -1,0 +1,229 @@
+//! The curve of a search as it is, and what is known of it.
+
+use std::ops::{ControlFlow, Range};
+
+use rayon::prelude::*;
+use shapespline_criteria::{Faults, WindowChecker};
+use shapespline_geometry::DVec3;
+
+use crate::{Diagnostics, Outcome, Phase, Status, Step, TensionFamily};
+
+/// Touched neighbourhoods from which on they are checked on all threads.
+const MANY: usize = 256;
+
+/// Segments on either side of a change of tension that a look takes in: what is further away hardly
+/// feels it.
+const AROUND: usize = 2;
+
+/// The family, the checker, and what is known to fail.
+pub(crate) struct State<'s, F> {
+    pub(crate) family: &'s mut F,
+    pub(crate) windows: WindowChecker<'s>,
+    monitor: &'s mut dyn FnMut(&Step) -> ControlFlow<()>,
+    /// Segments that fail, ascending.
+    pub(crate) faults: Vec<(usize, Faults)>,
+    /// Ranges of segments that the last solve touched, ascending and disjoint.
+    touched: Vec<Range<usize>>,
+    /// What a trial that failed left unchecked.
+    unchecked: Vec<Range<usize>>,
+    /// The segment on which the last trial failed: the first to be looked at in the next one.
+    pub(crate) suspect: usize,
+    /// Whether the curve without any tension is known to have faults: mostly the search began with it.
+    pub(crate) plain_fails: bool,
+    /// Tensions (ascending by node) that are raised but not yet set.
+    pub(crate) pending: Vec<(usize, f64)>,
+    /// Scratch: the nodes that are raised, and the legs of a look at other tension.
+    pub(crate) nodes: Vec<usize>,
+    pub(crate) legs: Vec<[DVec3; 2]>,
+    history: Vec<Step>,
+    pub(crate) iterations: usize,
+    solves: usize,
+    pub(crate) relaxations: usize,
+    /// Whether the monitor asked to stop.
+    pub(crate) stopped: bool,
+}
+
+impl<'s, F: TensionFamily> State<'s, F> {
+    pub(crate) fn new(
+        faults: Vec<(usize, Faults)>,
+        family: &'s mut F,
+        windows: WindowChecker<'s>,
+        monitor: &'s mut dyn FnMut(&Step) -> ControlFlow<()>,
+    ) -> Self {
+        let plain_fails = !faults.is_empty() && family.tension().iter().all(|&t| t == 0.0);
+        Self {
+            family,
+            windows,
+            monitor,
+            faults,
+            touched: Vec::with_capacity(16),
+            unchecked: Vec::new(),
+            suspect: 0,
+            plain_fails,
+            pending: Vec::with_capacity(32),
+            nodes: Vec::with_capacity(32),
+            legs: Vec::with_capacity(64),
+            history: Vec::with_capacity(16),
+            iterations: 1,
+            solves: 1,
+            relaxations: 0,
+            stopped: false,
+        }
+    }
+
+    /// Whether the data are closed.
+    pub(crate) fn closed(&self) -> bool {
+        self.windows.polygon().is_closed()
+    }
+
+    pub(crate) fn untouched(&self) -> bool {
+        self.history.is_empty()
+    }
+
+    pub(crate) fn solve_and_check_anew(&mut self) -> Result<(), F::Error> {
+        self.family.solve_again()?;
+        self.solves += 1;
+        let family = &*self.family;
+        self.faults = self.windows.all_faults(|i| family.end_legs(i));
+        Ok(())
+    }
+
+    /// Fills `legs` with the end legs that segments around some nodes would have under other tensions at
+    /// those, where that can be seen without setting them. Returns the segments.
+    pub(crate) fn look(&mut self, changes: &[(usize, f64)]) -> Option<Range<usize>> {
+        let (first, last) = (changes.first()?.0, changes.last()?.0);
+        let segments = self.windows.polygon().segments();
+        let around = first.saturating_sub(AROUND)..segments.min(last + AROUND);
+        if !self.family.legs_under(changes, around.clone(), &mut self.legs) {
+            return None;
+        }
+        self.solves += 1;
+        Some(around)
+    }
+
+    /// Whether segments around some nodes fail under other tensions at those, where that can be seen
+    /// without setting them.
+    pub(crate) fn seems_to_break(&mut self, changes: &[(usize, f64)]) -> Option<bool> {
+        let around = self.look(changes)?;
+        let (legs, start) = (&self.legs, around.start);
+        let suspect = self.suspect;
+        if around.contains(&suspect)
+            && !self.windows.faults_at(suspect, legs[suspect - start]).is_empty()
+        {
+            return Some(true);
+        }
+        let fault = self.windows.any_fault(around, |i| legs[i - start]);
+        self.suspect = fault.unwrap_or(suspect);
+        Some(fault.is_some())
+    }
+
+    /// Sets the pending tensions, solves where that matters, and checks what it touched.
+    pub(crate) fn set_pending(&mut self) -> Result<(), F::Error> {
+        let mut pending = std::mem::take(&mut self.pending);
+        self.solve(&pending)?;
+        pending.clear();
+        self.pending = pending;
+        let touched = &self.touched;
+        self.faults.retain(|(i, _)| {
+            let after = touched.partition_point(|r| r.start <= *i);
+            after == 0 || *i >= touched[after - 1].end
+        });
+        let untouched = self.faults.len();
+        let (family, windows) = (&*self.family, &mut self.windows);
+        let legs = |i| family.end_legs(i);
+        if touched.len() < MANY {
+            for range in touched {
+                windows.faults(range.clone(), legs, &mut self.faults);
+            }
+        } else {
+            let check = |windows: &mut WindowChecker<'_>, range: &Range<usize>| {
+                let mut found = Vec::new();
+                windows.faults(range.clone(), legs, &mut found);
+                found
+            };
+            let ranges = touched.par_iter().with_min_len(MANY / 4);
+            let found: Vec<_> =
+                ranges.map_init(|| windows.another(), check).flatten_iter().collect();
+            self.faults.extend(found);
+        }
+        if untouched > 0 {
+            self.faults.sort_unstable_by_key(|f| f.0);
+        }
+        if let Some(&(segment, _)) = self.faults.first() {
+            self.suspect = segment;
+        }
+        Ok(())
+    }
+
+    /// Sets tensions of a curve without faults; whether it still has none. Ends at the first fault, and
+    /// leaves it to the next solve to look at the rest.
+    pub(crate) fn try_tension(&mut self, changes: &[(usize, f64)]) -> Result<bool, F::Error> {
+        self.solve(changes)?;
+        let (family, windows) = (&*self.family, &mut self.windows);
+        let legs = |i| family.end_legs(i);
+        let known = self.suspect;
+        let suspect = self.touched.iter().any(|r| r.contains(&known)).then_some(known..known + 1);
+        let fault = suspect
+            .into_iter()
+            .chain(self.touched.iter().cloned())
+            .find_map(|range| windows.any_fault(range, legs));
+        if let Some(segment) = fault {
+            self.suspect = segment;
+            std::mem::swap(&mut self.unchecked, &mut self.touched);
+        }
+        Ok(fault.is_none())
+    }
+
+    /// Sets tensions under which the curve is known to have no faults: solved, not checked again.
+    pub(crate) fn return_to(&mut self, changes: &[(usize, f64)]) -> Result<(), F::Error> {
+        self.solve(changes)?;
+        self.touched.clear();
+        Ok(())
+    }
+
+    /// Sets tensions and finds what has to be checked.
+    fn solve(&mut self, changes: &[(usize, f64)]) -> Result<(), F::Error> {
+        self.touched.clear();
+        self.touched.append(&mut self.unchecked);
+        self.family.set_tension(changes, &mut self.touched)?;
+        self.solves += 1;
+        merge(&mut self.touched);
+        Ok(())
+    }
+
+    /// Adds a step to the history and shows it to the monitor.
+    pub(crate) fn log(&mut self, phase: Phase, violated: usize, changed: usize) {
+        let step = Step { phase, violated, changed };
+        self.stopped |= (self.monitor)(&step).is_break();
+        self.history.push(step);
+    }
+
+    /// Shows the monitor a step that is still under way; whether it asks to stop.
+    pub(crate) fn wants_to_stop(&mut self, phase: Phase, changed: usize) -> bool {
+        self.stopped |= (self.monitor)(&Step { phase, violated: 0, changed }).is_break();
+        self.stopped
+    }
+
+    pub(crate) fn outcome(self, status: Status) -> Outcome {
+        let diagnostics = Diagnostics {
+            status,
+            iterations: self.iterations,
+            solves: self.solves,
+            relaxations: self.relaxations,
+            nodes_changed: self.family.tension().iter().filter(|&&t| t > 0.0).count(),
+        };
+        Outcome { diagnostics, history: self.history, faults: self.faults }
+    }
+}
+
+/// Sorts ranges and joins those that meet.
+fn merge(ranges: &mut Vec<Range<usize>>) {
+    ranges.sort_unstable_by_key(|r| r.start);
+    ranges.dedup_by(|next, kept| {
+        let meets = next.start <= kept.end;
+        if meets {
+            kept.end = kept.end.max(next.end);
+        }
+        meets
+    });
+}
