@@ -6,6 +6,9 @@ use rayon::prelude::*;
 
 use crate::InputError;
 
+/// Rows that a thread takes at once.
+const FEW: usize = 4;
+
 /// Rows of different lengths in one array: row `k` is `values[offsets[k]..offsets[k + 1]]`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ragged<'a, T> {
@@ -73,8 +76,9 @@ impl<'a, T: Sync> Ragged<'a, T> {
         threads: Option<usize>,
         work: impl Fn(usize, &'a [T]) -> R + Sync,
     ) -> Result<Vec<R>, InputError> {
-        // Rows differ in length and in work, so rayon splits them as it goes.
-        let run = || (0..self.len()).into_par_iter().map(|k| work(k, self.row(k))).collect();
+        // Rows differ in length and in work: small parts, so that no thread is left with much at the end.
+        let parts = || (0..self.len()).into_par_iter().with_max_len(FEW);
+        let run = || parts().map(|k| work(k, self.row(k))).collect();
         let Some(count) = threads else { return Ok(run()) };
         let refused =
             |allowed| Err(InputError::Scalar { argument: "threads", value: count as f64, allowed });

@@ -55,11 +55,10 @@ impl ReparametrizedCubic {
             return Err(InputError::Length { argument: "slopes", expected, found, per });
         }
         let valid = |x: &f64| *x > 0.0 && *x <= 1.0;
-        for (index, pair) in slopes.iter().enumerate() {
-            if let Some(&value) = pair.iter().find(|x| !valid(x)) {
-                let (argument, allowed) = ("slopes", "in (0, 1]");
-                return Err(InputError::OutOfRange { argument, index, value, allowed });
-            }
+        if let Some(at) = slopes.as_flattened().iter().position(|x| !valid(x)) {
+            let (argument, allowed) = ("slopes", "in (0, 1]");
+            let (index, value) = (at / 2, slopes.as_flattened()[at]);
+            return Err(InputError::OutOfRange { argument, index, value, allowed });
         }
         Ok(Self { cubic, slopes })
     }

@@ -4,9 +4,9 @@ use std::sync::Arc;
 
 use pyo3::prelude::*;
 use shapespline::{
-    criteria::{Criteria, Criterion, Tolerances},
+    criteria::{self, Criteria, Criterion, Tolerances},
     geometry::{Boundary, DVec3, DataPolygon, Dimension, InputError, Parametrization},
-    search::{Fit, FitError, SearchOptions, Status, Strategy},
+    search::{Fit, FitError, Outcome, SearchOptions, Status, Strategy},
 };
 
 use crate::{
@@ -67,8 +67,9 @@ pub(crate) fn build<C: Member>(
     data: Data,
     make: impl FnOnce(DataPolygon) -> Result<C, FitError> + Send,
 ) -> PyResult<SpaceCurve> {
-    let curve = detached(py, data.points.len(), || make(data.polygon()?)).map_err(fit_error)?;
-    Ok(SpaceCurve::of(Arc::new(curve), None))
+    let size = data.points.len();
+    let made = detached(py, size, || Ok(Made::built(make(data.polygon()?)?)));
+    Ok(made.map_err(fit_error)?.curve)
 }
 
 /// The shape-preserving curve, or the exception that carries the last one.
@@ -78,9 +79,10 @@ pub(crate) fn preserve<C: Member>(
     failure: &Failure,
     search: impl FnOnce(DataPolygon, Monitor<'_>) -> Result<Fit<C>, FitError> + Send,
 ) -> PyResult<Py<PyAny>> {
-    let fit = interruptible(py, data.points.len(), |monitor| search(data.polygon()?, monitor))?
-        .map_err(fit_error)?;
-    finish(py, fit, failure, "")
+    let size = data.points.len();
+    interruptible(py, size, |ask| Ok(Made::searched(search(data.polygon()?, ask)?)))?
+        .map_err(fit_error)?
+        .into_python(py, failure, None)
 }
 
 /// What the report of a failure must know.
@@ -106,37 +108,59 @@ impl Failure {
     }
 }
 
-/// The curve of a fit that ended well, or the exception that carries it; `whose` begins its message.
-pub(crate) fn finish<C: Member>(
-    py: Python<'_>,
-    fit: Fit<C>,
-    failure: &Failure,
-    whose: &str,
-) -> PyResult<Py<PyAny>> {
-    let Fit { curve, outcome, report } = fit;
-    let (status, iterations) = (outcome.diagnostics.status, outcome.diagnostics.iterations);
-    let search = Search { diagnostics: outcome.diagnostics, history: outcome.history };
-    let base = SpaceCurve::of(Arc::new(curve), Some(search));
-    if status == Status::Solved {
-        return base.into_python(py);
+/// A curve as Python is going to see it. It is made by the thread that fitted: what one processor has
+/// just written is dear to move by another.
+pub(crate) struct Made {
+    curve: SpaceCurve,
+    /// The iterations of a search that did not end well, and the report on its last curve.
+    unsolved: Option<Box<(usize, criteria::ShapeReport)>>,
+}
+
+impl Made {
+    /// A curve of given tension.
+    pub(crate) fn built<C: Member>(curve: C) -> Self {
+        Self { curve: SpaceCurve::of(Arc::new(curve), None), unsolved: None }
     }
-    let violations: Vec<String> = Criterion::ALL
-        .iter()
-        .map(|&criterion| (report.count(criterion).violated, criterion.name()))
-        .filter(|(violated, _)| *violated > 0)
-        .map(|(violated, name)| format!("{name} on {violated}"))
-        .collect();
-    let message = format!(
-        "{whose}the shape is not preserved after {iterations} iterations: of {} segments, {} violate it; \
-         {} (this exception carries the last curve and its report)",
-        report.segments,
-        violations.join(", "),
-        failure.advice,
-    );
-    let curve: Arc<dyn Curve> = Arc::clone(&base.curve);
-    let report = curve.with_locations(report);
-    let subject = Subject::Own(curve);
-    let report = ShapeReport::of(report, subject, failure.criteria, failure.tolerances);
-    let report = Py::new(py, report)?.into_any();
-    Err(convergence_error(py, message, base.into_python(py)?, report))
+
+    /// A curve that was searched for.
+    pub(crate) fn searched<C: Member>(fit: Fit<C>) -> Self {
+        let Fit { curve, outcome, report } = fit;
+        let Outcome { diagnostics, history, .. } = outcome;
+        let solved = diagnostics.status == Status::Solved;
+        let unsolved = (!solved).then(|| Box::new((diagnostics.iterations, report)));
+        let search = Search { diagnostics, history };
+        Self { curve: SpaceCurve::of(Arc::new(curve), Some(search)), unsolved }
+    }
+
+    /// The object of the family's class, or the exception that carries it: its message begins with the
+    /// index of one curve among many.
+    pub(crate) fn into_python(
+        self,
+        py: Python<'_>,
+        failure: &Failure,
+        index: Option<usize>,
+    ) -> PyResult<Py<PyAny>> {
+        let Some(unsolved) = self.unsolved else { return self.curve.into_python(py) };
+        let (iterations, report) = *unsolved;
+        let violations: Vec<String> = Criterion::ALL
+            .iter()
+            .map(|&criterion| (report.count(criterion).violated, criterion.name()))
+            .filter(|(violated, _)| *violated > 0)
+            .map(|(violated, name)| format!("{name} on {violated}"))
+            .collect();
+        let whose = index.map_or_else(String::new, |k| format!("curve {k}: "));
+        let message = format!(
+            "{whose}the shape is not preserved after {iterations} iterations: of {} segments, {} violate it; \
+             {} (this exception carries the last curve and its report)",
+            report.segments,
+            violations.join(", "),
+            failure.advice,
+        );
+        let curve: Arc<dyn Curve> = Arc::clone(&self.curve.curve);
+        let report = curve.with_locations(report);
+        let subject = Subject::Own(curve);
+        let report = ShapeReport::of(report, subject, failure.criteria, failure.tolerances);
+        let report = Py::new(py, report)?.into_any();
+        Err(convergence_error(py, message, self.curve.into_python(py)?, report))
+    }
 }

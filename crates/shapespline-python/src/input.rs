@@ -97,14 +97,18 @@ pub(crate) fn finite(argument: &str, array: &Array<'_>) -> PyResult<()> {
     Err(PyValueError::new_err(format!("{argument}[{index}] must be finite, got {value}")))
 }
 
-/// `make(0), …, make(count − 1)`, on all threads where there are many: of a large copy the first touch of
-/// its memory takes longest.
-fn made<T: Send>(py: Python<'_>, count: usize, make: impl Fn(usize) -> T + Sync + Send) -> Vec<T> {
+/// The points of rows of coordinates, on all threads where there are many: of a large copy the first touch
+/// of its memory takes longest.
+fn made<const N: usize>(
+    py: Python<'_>,
+    rows: &[[f64; N]],
+    make: impl Fn(&[f64; N]) -> DVec3 + Sync + Send,
+) -> Vec<DVec3> {
     const MANY: usize = 32_768;
-    if count < 2 * MANY {
-        return (0..count).map(make).collect();
+    if rows.len() < 2 * MANY {
+        return rows.iter().map(make).collect();
     }
-    detached(py, count, || (0..count).into_par_iter().with_min_len(MANY).map(make).collect())
+    detached(py, rows.len(), || rows.par_iter().with_min_len(MANY).map(make).collect())
 }
 
 /// Points: `(n, 2)` or `(n, 3)`.
@@ -120,12 +124,12 @@ impl<'py> FromPyObject<'_, 'py> for Points {
         let array = array("points", &object)?;
         let (py, values) = (object.py(), array.values());
         match *array.shape() {
-            [count, 3] => Ok(Self {
-                points: made(py, count, |i| DVec3::from_slice(&values[3 * i..3 * i + 3])),
+            [_, 3] => Ok(Self {
+                points: made(py, values.as_chunks().0, |&row| DVec3::from_array(row)),
                 dimension: Dimension::Three,
             }),
-            [count, 2] => Ok(Self {
-                points: made(py, count, |i| DVec3::new(values[2 * i], values[2 * i + 1], 0.0)),
+            [_, 2] => Ok(Self {
+                points: made(py, values.as_chunks().0, |&[x, y]| DVec3::new(x, y, 0.0)),
                 dimension: Dimension::Two,
             }),
             _ => Err(PyValueError::new_err(format!(

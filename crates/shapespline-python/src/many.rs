@@ -3,7 +3,7 @@
 //! The Python function of that name (`python/shapespline/_many.py`) fills in the defaults of each
 //! family; here every option has a value.
 
-use std::{ops::ControlFlow, sync::Arc};
+use std::ops::ControlFlow;
 
 use pyo3::{
     prelude::*,
@@ -13,36 +13,29 @@ use shapespline::{
     catmull_rom::{self, Continuity, HandleOptions},
     geometry::{Boundary, DVec3, DataPolygon, Parametrization, Ragged},
     nu::{self, Strategy},
-    search::{Collection, Fit, FitError, Tension, fit_many},
+    search::{Collection, FitError, Tension, fit_many},
     tension::{self, TangentScale},
 };
 
 use crate::{
-    curve::{Member, SpaceCurve},
     error::{curve_error, fit_error, input_error},
-    fit::{Data, Failure, Searching, finish},
+    fit::{Data, Failure, Made, Searching},
     input::{Offsets, Points},
     options::{self, CriteriaNames, Ends, Method, Parameters},
-    work::interruptible_many,
+    work::{PARALLEL, interruptible_each, interruptible_many},
 };
-
-/// A curve of given tension, or one that was searched for.
-enum Made<C> {
-    Built(C),
-    Searched(Box<Fit<C>>),
-}
 
 /// The question of a search whether to go on.
 type Ask<'a> = &'a (dyn Fn() -> ControlFlow<()> + Sync);
 
 /// Fits all, and returns the curves (`None` where one failed) and the exceptions by index.
-fn run<'py, C: Member>(
+fn run<'py>(
     py: Python<'py>,
     data: &Data,
     offsets: &Offsets,
     threads: Option<usize>,
     failure: &Failure,
-    make: impl Fn(DataPolygon, Ask<'_>) -> Result<Made<C>, FitError> + Sync,
+    make: impl Fn(DataPolygon, Ask<'_>) -> Result<Made, FitError> + Sync,
 ) -> PyResult<(Bound<'py, PyList>, Bound<'py, PyDict>)> {
     // A line that every option suits: an error now is the options', not that of any curve.
     let parametrization = match &data.parametrization {
@@ -57,19 +50,23 @@ fn run<'py, C: Member>(
     let Data { dimension, boundary, .. } = *data;
     let parametrization = data.parametrization.clone();
     let collection = Collection { points, dimension, parametrization, boundary };
-    let fits = interruptible_many(py, |ask| {
-        fit_many(&collection, threads, |polygon| match ask() {
-            ControlFlow::Continue(()) => make(polygon, ask).map(Some),
-            ControlFlow::Break(()) => Ok(None),
-        })
-    })?
-    .map_err(input_error)?;
+    collection.check().map_err(input_error)?;
+    let fit = |polygon, ask: Ask<'_>| match ask() {
+        ControlFlow::Continue(()) => make(polygon, ask).map(Some),
+        ControlFlow::Break(()) => Ok(None),
+    };
+    let longest = (0..points.len()).map(|k| points.range(k).len()).max().unwrap_or(0);
+    let fits = if threads.is_none() && longest < PARALLEL {
+        interruptible_each(py, points.len(), |k, ask| collection.fit(k, |p| fit(p, ask)))?
+    } else {
+        let fit_all = |ask: Ask<'_>| fit_many(&collection, threads, |p| fit(p, ask));
+        interruptible_many(py, fit_all)?.map_err(input_error)?
+    };
 
     let (curves, errors) = (PyList::empty(py), PyDict::new(py));
     for (k, fit) in fits.into_iter().enumerate() {
         let done = match fit {
-            Ok(Some(Made::Built(curve))) => SpaceCurve::of(Arc::new(curve), None).into_python(py),
-            Ok(Some(Made::Searched(fit))) => finish(py, *fit, failure, &format!("curve {k}: ")),
+            Ok(Some(made)) => made.into_python(py, failure, Some(k)),
             // Interrupted: the exception has been raised above.
             Ok(None) => continue,
             Err(error) => Err(curve_error(k, &error)),
@@ -125,27 +122,27 @@ pub(crate) fn _fit_many<'py>(
     match method {
         Method::Nu => run(py, &data, &offsets, threads, &failure, |polygon, ask| {
             if !shape_preserving {
-                return nu::NuSpline::new(polygon, Tension::Uniform(tension)).map(Made::Built);
+                return nu::NuSpline::new(polygon, Tension::Uniform(tension)).map(Made::built);
             }
             nu::NuSpline::shape_preserving_with(polygon, &search, &mut |_| ask())
-                .map(|fit| Made::Searched(Box::new(fit)))
+                .map(Made::searched)
         }),
         Method::Tension => run(py, &data, &offsets, threads, &failure, |polygon, ask| {
             if !shape_preserving {
                 let scale = TangentScale::Uniform(tangent_scale);
-                return tension::TensionSpline::new(polygon, scale).map(Made::Built);
+                return tension::TensionSpline::new(polygon, scale).map(Made::built);
             }
             tension::TensionSpline::shape_preserving_with(polygon, &search, &mut |_| ask())
-                .map(|fit| Made::Searched(Box::new(fit)))
+                .map(Made::searched)
         }),
         Method::CatmullRom => run(py, &data, &offsets, threads, &failure, |polygon, ask| {
             if !shape_preserving {
                 let tension = Tension::Uniform(tension);
-                return catmull_rom::CatmullRom::new(polygon, tension, continuity).map(Made::Built);
+                return catmull_rom::CatmullRom::new(polygon, tension, continuity).map(Made::built);
             }
             let options = HandleOptions { criteria, tolerances, safety, continuity };
             catmull_rom::CatmullRom::shape_preserving_with(polygon, &options, &mut |_| ask())
-                .map(|fit| Made::Searched(Box::new(fit)))
+                .map(Made::searched)
         }),
     }
 }

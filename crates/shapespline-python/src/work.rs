@@ -5,7 +5,7 @@ use std::{
     process,
     sync::{
         Arc, Mutex, PoisonError,
-        atomic::{AtomicBool, Ordering},
+        atomic::{AtomicBool, AtomicUsize, Ordering},
         mpsc,
     },
     time::{Duration, Instant},
@@ -15,7 +15,10 @@ use pyo3::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
 /// From so many items on, the crates below work in parallel.
-const PARALLEL: usize = 8192;
+pub(crate) const PARALLEL: usize = 8192;
+
+/// Searches that a thread takes at once.
+const FEW: usize = 2;
 
 /// How often a long search asks whether Ctrl-C was pressed.
 const PATIENCE: Duration = Duration::from_millis(50);
@@ -93,6 +96,63 @@ pub(crate) fn interruptible_many<T: Send>(
     });
     py.check_signals()?;
     done
+}
+
+/// Runs many short searches, none of which uses threads itself: on this thread, which begins at once and
+/// looks for Ctrl-C between two of them, and on those of the pool as they wake up.
+pub(crate) fn interruptible_each<T: Send>(
+    py: Python<'_>,
+    count: usize,
+    search: impl Fn(usize, GoOn<'_>) -> T + Sync,
+) -> PyResult<Vec<T>> {
+    let (stop, next) = (AtomicBool::new(false), AtomicUsize::new(0));
+    let take = |watch: &mut dyn FnMut()| {
+        let mut done = Vec::new();
+        loop {
+            let first = next.fetch_add(FEW, Ordering::Relaxed);
+            if first >= count {
+                return done;
+            }
+            for k in first..count.min(first + FEW) {
+                done.push((k, search(k, &|| go_on(&stop))));
+                watch();
+            }
+        }
+    };
+    let mut interrupt = None;
+    let mut all = py.detach(|| {
+        let mut asked = Instant::now();
+        let mut here = || {
+            take(&mut || {
+                if asked.elapsed() >= PATIENCE {
+                    if let Err(error) = Python::attach(|py| py.check_signals()) {
+                        stop.store(true, Ordering::Relaxed);
+                        interrupt = Some(error);
+                    }
+                    asked = Instant::now();
+                }
+            })
+        };
+        let Some(pool) = pool() else { return here() };
+        let others = Mutex::new(Vec::new());
+        let mut all = pool.in_place_scope(|scope| {
+            for _ in 1..pool.current_num_threads().min(count.div_ceil(FEW)) {
+                scope.spawn(|_| {
+                    let done = take(&mut || {});
+                    others.lock().unwrap_or_else(PoisonError::into_inner).extend(done);
+                });
+            }
+            here()
+        });
+        all.extend(others.into_inner().unwrap_or_else(PoisonError::into_inner));
+        all
+    });
+    if let Some(error) = interrupt {
+        return Err(error);
+    }
+    py.check_signals()?;
+    all.sort_unstable_by_key(|found| found.0);
+    Ok(all.into_iter().map(|found| found.1).collect())
 }
 
 /// The search runs on this thread, and asks for signals itself.
