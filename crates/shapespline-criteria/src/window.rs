@@ -33,18 +33,26 @@ thread_local! {
 
 impl Drop for WindowChecker<'_> {
     fn drop(&mut self) {
-        let mut spare = SPARE.take();
-        spare.extend(self.kept.iter_mut().filter_map(Option::take));
-        spare.truncate(KEPT);
-        SPARE.set(spare);
+        let kept = self.kept.iter_mut().filter_map(Option::take);
+        // A thread that ends keeps nothing.
+        let _ = SPARE.try_with(|spare| {
+            let mut windows = spare.take();
+            windows.extend(kept);
+            windows.truncate(KEPT);
+            spare.set(windows);
+        });
     }
 }
 
 /// A window on nothing yet.
 fn new_window() -> Box<Window> {
-    let mut spare = SPARE.take();
-    let mut window = spare.pop().unwrap_or_default();
-    SPARE.set(spare);
+    let used = SPARE.try_with(|spare| {
+        let mut windows = spare.take();
+        let window = windows.pop();
+        spare.set(windows);
+        window
+    });
+    let mut window = used.ok().flatten().unwrap_or_default();
     window.number = usize::MAX;
     window
 }

@@ -57,16 +57,24 @@ impl<F: TensionFamily> State<'_, F> {
         let mut levels = Vec::new();
         for run in consecutive(&equal, closed.then_some(n)) {
             let run = || run.iter().flat_map(|&m| [m % n, (m + 1) % n]);
-            let pull = |i: usize| tension_under(pending, &**family, i) / family.weight(i);
+            let tension =
+                |i: usize| place(pending, i).map_or(family.tension()[i], |at| pending[at].1);
+            let pull = |i: usize| tension(i) / family.weight(i);
             let level = options.raised(run().map(pull).fold(0.0, f64::max));
             let raised = run().filter(|i| nodes.binary_search(i).is_ok());
             levels.extend(raised.map(|i| (i, level * family.weight(i))));
         }
         for &i in &*nodes {
-            let tension = options.raised(tension_under(pending, &**family, i));
-            set(pending, (i, tension));
+            match place(pending, i) {
+                Ok(at) => pending[at].1 = options.raised(pending[at].1),
+                Err(at) => pending.insert(at, (i, options.raised(family.tension()[i]))),
+            }
         }
-        levels.into_iter().for_each(|level| set(pending, level));
+        for (i, level) in levels {
+            if let Ok(at) = place(pending, i) {
+                pending[at].1 = level;
+            }
+        }
         nodes.len()
     }
 
@@ -114,18 +122,9 @@ fn consecutive(list: &[usize], cycle: Option<usize>) -> Vec<Vec<usize>> {
     runs
 }
 
-/// The tension of a node, changes that are pending included.
-fn tension_under<F: TensionFamily>(pending: &[(usize, f64)], family: &F, i: usize) -> f64 {
-    let found = pending.binary_search_by_key(&i, |change| change.0);
-    found.map_or_else(|_| family.tension()[i], |at| pending[at].1)
-}
-
-/// Sets the change of a node among others, ascending.
-fn set(changes: &mut Vec<(usize, f64)>, change: (usize, f64)) {
-    match changes.binary_search_by_key(&change.0, |change| change.0) {
-        Ok(at) => changes[at] = change,
-        Err(at) => changes.insert(at, change),
-    }
+/// Where the change of a node stands among others, or where it belongs.
+fn place(changes: &[(usize, f64)], node: usize) -> Result<usize, usize> {
+    changes.binary_search_by_key(&node, |change| change.0)
 }
 
 #[cfg(test)]

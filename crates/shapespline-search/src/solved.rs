@@ -77,7 +77,7 @@ struct Lent(Work);
 
 impl Lent {
     fn new() -> Self {
-        let mut work = SPARE.take();
+        let mut work = SPARE.try_with(Cell::take).unwrap_or_default();
         work.kept.clear();
         work.place_is_valid = false;
         Self(work)
