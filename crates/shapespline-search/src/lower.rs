@@ -48,10 +48,10 @@ impl Nodes {
         all: bool,
     ) -> Result<usize, F::Error> {
         state.relaxations += 1;
-        // No tension at all comes first: growth often raises more nodes than it had to.
         // Looks go on for as long as they see what breaks.
         let mut looks = true;
         if !(all && state.plain_fails) {
+            // No tension at all comes first: growth often raises more nodes than it had to.
             looks = state.seems_to_break(self.at(0.0)) == Some(true);
             if !looks && self.keeps_shape(state, 0.0)? {
                 return Ok(self.full.len());
