@@ -106,22 +106,7 @@ impl Place {
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
-
-    struct Array {
-        rows: Vec<Row>,
-        cyclic: bool,
-    }
-    impl Rows for Array {
-        fn count(&self) -> usize {
-            self.rows.len()
-        }
-        fn is_cyclic(&self) -> bool {
-            self.cyclic
-        }
-        fn row(&self, i: usize) -> Row {
-            self.rows[i]
-        }
-    }
+    use crate::resolvable::tests::Array;
 
     fn system(n: usize, cyclic: bool) -> Array {
         let row = |i: usize| {

@@ -304,14 +304,14 @@ fn record(range: Range<usize>, n: usize, touched: &mut Vec<Range<usize>>) {
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
     use crate::{solve_cyclic, solve_tridiagonal};
     use proptest::prelude::*;
 
-    struct Array {
-        rows: Vec<Row>,
-        cyclic: bool,
+    pub(crate) struct Array {
+        pub(crate) rows: Vec<Row>,
+        pub(crate) cyclic: bool,
     }
     impl Rows for Array {
         fn count(&self) -> usize {

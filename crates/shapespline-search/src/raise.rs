@@ -78,22 +78,21 @@ impl<F: TensionFamily> State<'_, F> {
         nodes.len()
     }
 
-    /// Whether segments fail under the pending tensions, where that can be seen without setting them. Those
-    /// around are looked at, the others are as they were, as far as anybody knows.
+    /// Whether segments around the pending tensions fail under them, where that can be seen without setting
+    /// them and takes in all that are known to fail.
     fn faults_stay(&mut self) -> bool {
         let pending = std::mem::take(&mut self.pending);
         let around = self.look(&pending);
         self.pending = pending;
         let Some(around) = around else { return false };
-        let (legs, start) = (&self.legs, around.start);
-        self.faults.retain(|(i, _)| !around.contains(i));
-        let elsewhere = self.faults.len();
-        self.windows.faults(around, |i| legs[i - start], &mut self.faults);
-        if let Some(&(segment, _)) = self.faults.get(elsewhere) {
-            self.suspect = segment;
+        if self.faults.iter().any(|(i, _)| !around.contains(i)) {
+            return false;
         }
-        if elsewhere > 0 {
-            self.faults.sort_unstable_by_key(|f| f.0);
+        let (legs, start) = (&self.legs, around.start);
+        self.faults.clear();
+        self.windows.faults(around, |i| legs[i - start], &mut self.faults);
+        if let Some(&(segment, _)) = self.faults.first() {
+            self.suspect = segment;
         }
         !self.faults.is_empty()
     }
