@@ -1,5 +1,7 @@
 //! Numbers and arrays that come in. Every error names the argument.
 
+use std::borrow::Cow;
+
 use numpy::{
     PyArrayDescrMethods, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArray,
     PyUntypedArrayMethods,
@@ -111,7 +113,50 @@ fn made<const N: usize>(
     detached(py, rows.len(), || rows.par_iter().with_min_len(MANY).map(make).collect())
 }
 
-/// Points: `(n, 2)` or `(n, 3)`.
+/// The caller's own array of points: `(n, 2)` or `(n, 3)`.
+pub(crate) struct PointArray<'py> {
+    array: Array<'py>,
+    pub(crate) dimension: Dimension,
+}
+
+impl PointArray<'_> {
+    /// The points, copied only where they lack the third coordinate.
+    pub(crate) fn points(&self, py: Python<'_>) -> Cow<'_, [DVec3]> {
+        match self.dimension {
+            Dimension::Three => Cow::Borrowed(bytemuck::cast_slice(self.array.values())),
+            Dimension::Two => Cow::Owned(self.to_vec(py)),
+        }
+    }
+
+    fn to_vec(&self, py: Python<'_>) -> Vec<DVec3> {
+        let values = self.array.values();
+        match self.dimension {
+            Dimension::Three => made(py, values.as_chunks().0, |&row| DVec3::from_array(row)),
+            Dimension::Two => made(py, values.as_chunks().0, |&[x, y]| DVec3::new(x, y, 0.0)),
+        }
+    }
+}
+
+impl<'py> FromPyObject<'_, 'py> for PointArray<'py> {
+    type Error = PyErr;
+
+    fn extract(object: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
+        let array = array("points", &object)?;
+        let dimension = match *array.shape() {
+            [_, 3] => Dimension::Three,
+            [_, 2] => Dimension::Two,
+            _ => {
+                return Err(PyValueError::new_err(format!(
+                    "points must have shape (n, 2) or (n, 3), got shape {}",
+                    array.shape_text()
+                )));
+            }
+        };
+        Ok(Self { array, dimension })
+    }
+}
+
+/// Points of their own, which an array was copied to.
 pub(crate) struct Points {
     pub(crate) points: Vec<DVec3>,
     pub(crate) dimension: Dimension,
@@ -121,22 +166,8 @@ impl<'py> FromPyObject<'_, 'py> for Points {
     type Error = PyErr;
 
     fn extract(object: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
-        let array = array("points", &object)?;
-        let (py, values) = (object.py(), array.values());
-        match *array.shape() {
-            [_, 3] => Ok(Self {
-                points: made(py, values.as_chunks().0, |&row| DVec3::from_array(row)),
-                dimension: Dimension::Three,
-            }),
-            [_, 2] => Ok(Self {
-                points: made(py, values.as_chunks().0, |&[x, y]| DVec3::new(x, y, 0.0)),
-                dimension: Dimension::Two,
-            }),
-            _ => Err(PyValueError::new_err(format!(
-                "points must have shape (n, 2) or (n, 3), got shape {}",
-                array.shape_text()
-            ))),
-        }
+        let array: PointArray<'_> = object.extract()?;
+        Ok(Self { points: array.to_vec(object.py()), dimension: array.dimension })
     }
 }
 

@@ -7,7 +7,7 @@ use std::ops::ControlFlow;
 
 use pyo3::{
     prelude::*,
-    types::{PyDict, PyList},
+    types::{PyDict, PyTuple},
 };
 use shapespline::{
     catmull_rom::{self, Continuity, HandleOptions},
@@ -19,8 +19,8 @@ use shapespline::{
 
 use crate::{
     error::{curve_error, fit_error, input_error},
-    fit::{Data, Failure, Made, Searching},
-    input::{Offsets, Points},
+    fit::{Failure, Made, Searching},
+    input::{Offsets, PointArray},
     options::{self, CriteriaNames, Ends, Method, Parameters},
     work::{PARALLEL, interruptible_each, interruptible_many},
 };
@@ -28,27 +28,31 @@ use crate::{
 /// The question of a search whether to go on.
 type Ask<'a> = &'a (dyn Fn() -> ControlFlow<()> + Sync);
 
+/// What the curves are made from, and on how many threads.
+struct Rows<'py> {
+    points: PointArray<'py>,
+    offsets: Offsets,
+    parametrization: Parametrization,
+    boundary: Boundary,
+    threads: Option<usize>,
+}
+
 /// Fits all, and returns the curves (`None` where one failed) and the exceptions by index.
 fn run<'py>(
     py: Python<'py>,
-    data: &Data,
-    offsets: &Offsets,
-    threads: Option<usize>,
+    rows: Rows<'py>,
     failure: &Failure,
     make: impl Fn(DataPolygon, Ask<'_>) -> Result<Made, FitError> + Sync,
-) -> PyResult<(Bound<'py, PyList>, Bound<'py, PyDict>)> {
+) -> PyResult<(Bound<'py, PyTuple>, Bound<'py, PyDict>)> {
+    let Rows { points, offsets, parametrization, boundary, threads } = rows;
     // A line that every option suits: an error now is the options', not that of any curve.
-    let parametrization = match &data.parametrization {
-        Parametrization::Given(_) => Parametrization::Uniform,
-        named => named.clone(),
-    };
     let line = vec![DVec3::ZERO, DVec3::X];
-    let line = DataPolygon::new(line, &parametrization, Boundary::ZeroCurvature);
+    let line = DataPolygon::new(line, &Parametrization::Uniform, Boundary::ZeroCurvature);
     make(line.map_err(input_error)?, &|| ControlFlow::Continue(())).map_err(fit_error)?;
 
-    let points = Ragged::new(&data.points, &offsets.0).map_err(input_error)?;
-    let Data { dimension, boundary, .. } = *data;
-    let parametrization = data.parametrization.clone();
+    let dimension = points.dimension;
+    let points = points.points(py);
+    let points = Ragged::new(&points, &offsets.0).map_err(input_error)?;
     let collection = Collection { points, dimension, parametrization, boundary };
     collection.check().map_err(input_error)?;
     let fit = |polygon, ask: Ask<'_>| match ask() {
@@ -57,13 +61,16 @@ fn run<'py>(
     };
     let longest = (0..points.len()).map(|k| points.range(k).len()).max().unwrap_or(0);
     let fits = if threads.is_none() && longest < PARALLEL {
-        interruptible_each(py, points.len(), |k, ask| collection.fit(k, |p| fit(p, ask)))?
+        // Errors are large and rare.
+        let fit_one = |k, ask: Ask<'_>| collection.fit(k, |p| fit(p, ask)).map_err(Box::new);
+        interruptible_each(py, points.len(), fit_one)?
     } else {
         let fit_all = |ask: Ask<'_>| fit_many(&collection, threads, |p| fit(p, ask));
-        interruptible_many(py, fit_all)?.map_err(input_error)?
+        let fits = interruptible_many(py, fit_all)?.map_err(input_error)?;
+        fits.into_iter().map(|fit| fit.map_err(Box::new)).collect()
     };
 
-    let (curves, errors) = (PyList::empty(py), PyDict::new(py));
+    let (mut curves, errors) = (Vec::with_capacity(fits.len()), PyDict::new(py));
     for (k, fit) in fits.into_iter().enumerate() {
         let done = match fit {
             Ok(Some(made)) => made.into_python(py, failure, Some(k)),
@@ -72,14 +79,14 @@ fn run<'py>(
             Err(error) => Err(curve_error(k, &error)),
         };
         match done {
-            Ok(curve) => curves.append(curve)?,
+            Ok(curve) => curves.push(curve),
             Err(error) => {
-                curves.append(py.None())?;
+                curves.push(py.None());
                 errors.set_item(k, error.into_value(py))?;
             }
         }
     }
-    Ok((curves, errors))
+    Ok((PyTuple::new(py, curves)?, errors))
 }
 
 /// Fits every curve of a collection.
@@ -88,7 +95,7 @@ fn run<'py>(
 #[allow(clippy::too_many_arguments)]
 pub(crate) fn _fit_many<'py>(
     py: Python<'py>,
-    points: Points,
+    points: PointArray<'py>,
     offsets: Offsets,
     #[pyo3(from_py_with = options::method)] method: Method,
     parameters: Parameters,
@@ -106,8 +113,9 @@ pub(crate) fn _fit_many<'py>(
     #[pyo3(from_py_with = options::continuity)] continuity: Continuity,
     #[pyo3(from_py_with = options::tension)] tension: f64,
     #[pyo3(from_py_with = options::tangent_scale)] tangent_scale: f64,
-) -> PyResult<(Bound<'py, PyList>, Bound<'py, PyDict>)> {
-    let data = Data::new(points, parameters, boundary)?;
+) -> PyResult<(Bound<'py, PyTuple>, Bound<'py, PyDict>)> {
+    let boundary = boundary.of(points.dimension)?;
+    let rows = Rows { points, offsets, parametrization: parameters.0, boundary, threads };
     let step = step.unwrap_or_else(|| method.default_step(strategy));
     let search = Searching { criteria, strategy, step, max_iterations }.options(
         coplanarity,
@@ -120,14 +128,14 @@ pub(crate) fn _fit_many<'py>(
         Method::Nu | Method::Tension => Failure::from(&search),
     };
     match method {
-        Method::Nu => run(py, &data, &offsets, threads, &failure, |polygon, ask| {
+        Method::Nu => run(py, rows, &failure, |polygon, ask| {
             if !shape_preserving {
                 return nu::NuSpline::new(polygon, Tension::Uniform(tension)).map(Made::built);
             }
             nu::NuSpline::shape_preserving_with(polygon, &search, &mut |_| ask())
                 .map(Made::searched)
         }),
-        Method::Tension => run(py, &data, &offsets, threads, &failure, |polygon, ask| {
+        Method::Tension => run(py, rows, &failure, |polygon, ask| {
             if !shape_preserving {
                 let scale = TangentScale::Uniform(tangent_scale);
                 return tension::TensionSpline::new(polygon, scale).map(Made::built);
@@ -135,7 +143,7 @@ pub(crate) fn _fit_many<'py>(
             tension::TensionSpline::shape_preserving_with(polygon, &search, &mut |_| ask())
                 .map(Made::searched)
         }),
-        Method::CatmullRom => run(py, &data, &offsets, threads, &failure, |polygon, ask| {
+        Method::CatmullRom => run(py, rows, &failure, |polygon, ask| {
             if !shape_preserving {
                 let tension = Tension::Uniform(tension);
                 return catmull_rom::CatmullRom::new(polygon, tension, continuity).map(Made::built);

@@ -17,9 +17,6 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 /// From so many items on, the crates below work in parallel.
 pub(crate) const PARALLEL: usize = 8192;
 
-/// Searches that a thread takes at once.
-const FEW: usize = 2;
-
 /// How often a long search asks whether Ctrl-C was pressed.
 const PATIENCE: Duration = Duration::from_millis(50);
 
@@ -109,18 +106,16 @@ pub(crate) fn interruptible_each<T: Send>(
     let take = |watch: &mut dyn FnMut()| {
         let mut done = Vec::new();
         loop {
-            let first = next.fetch_add(FEW, Ordering::Relaxed);
-            if first >= count {
+            let k = next.fetch_add(1, Ordering::Relaxed);
+            if k >= count {
                 return done;
             }
-            for k in first..count.min(first + FEW) {
-                done.push((k, search(k, &|| go_on(&stop))));
-                watch();
-            }
+            done.push((k, search(k, &|| go_on(&stop))));
+            watch();
         }
     };
     let mut interrupt = None;
-    let mut all = py.detach(|| {
+    let all = py.detach(|| {
         let mut asked = Instant::now();
         let mut here = || {
             take(&mut || {
@@ -136,7 +131,7 @@ pub(crate) fn interruptible_each<T: Send>(
         let Some(pool) = pool() else { return here() };
         let others = Mutex::new(Vec::new());
         let mut all = pool.in_place_scope(|scope| {
-            for _ in 1..pool.current_num_threads().min(count.div_ceil(FEW)) {
+            for _ in 1..pool.current_num_threads().min(count) {
                 scope.spawn(|_| {
                     let done = take(&mut || {});
                     others.lock().unwrap_or_else(PoisonError::into_inner).extend(done);
@@ -151,8 +146,11 @@ pub(crate) fn interruptible_each<T: Send>(
         return Err(error);
     }
     py.check_signals()?;
-    all.sort_unstable_by_key(|found| found.0);
-    Ok(all.into_iter().map(|found| found.1).collect())
+    let mut in_order: Vec<Option<T>> = (0..count).map(|_| None).collect();
+    for (k, found) in all {
+        in_order[k] = Some(found);
+    }
+    Ok(in_order.into_iter().flatten().collect())
 }
 
 /// The search runs on this thread, and asks for signals itself.
