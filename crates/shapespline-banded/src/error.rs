@@ -27,7 +27,8 @@ pub enum SolveError {
 /// The pivot, if one can divide by it.
 #[inline]
 pub(crate) fn usable(row: usize, pivot: f64) -> Result<f64, SolveError> {
-    if pivot != 0.0 && pivot.is_finite() {
+    let size = pivot.abs();
+    if size > 0.0 && size < f64::INFINITY {
         Ok(pivot)
     } else {
         Err(SolveError::Pivot { row, pivot })

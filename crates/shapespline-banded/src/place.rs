@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use crate::{
     Resolvable, Row, Rows, SolveError,
-    sweep::{EARLY, Eliminated, eliminate},
+    sweep::{EARLY, Eliminated, eliminate, substitute},
 };
 
 /// Some neighbouring rows of a [`Resolvable`] system, to be solved with other coefficients while
@@ -21,7 +21,7 @@ pub struct Place {
     first: usize,
     /// What the rows before hand on to the first, and those after to the last.
     around: [Eliminated; 2],
-    eliminated: Vec<Eliminated>,
+    ratio: Vec<f64>,
     solution: Vec<DVec3>,
 }
 
@@ -58,7 +58,8 @@ impl Place {
         self.first = rows.start;
         self.rows.clear();
         self.rows.extend(rows.map(|i| system.row(i)));
-        self.eliminated.reserve(self.rows.len());
+        self.ratio.resize(self.rows.len(), 0.0);
+        self.solution.resize(self.rows.len(), DVec3::ZERO);
         Ok(true)
     }
 
@@ -78,26 +79,22 @@ impl Place {
     /// # Errors
     /// A pivot that is zero or not finite.
     pub fn solve(&mut self) -> Result<&[DVec3], SolveError> {
-        let [mut before, (ratio, reduced)] = self.around;
-        self.eliminated.clear();
-        if let Some((last, rows)) = self.rows.split_last() {
-            for (i, row) in (self.first..).zip(rows) {
-                before = eliminate(i, *row, before)?;
-                self.eliminated.push(before);
-            }
-            let mut row = *last;
-            row.diagonal -= row.upper * ratio;
-            row.right -= reduced * row.upper;
-            self.eliminated.push(eliminate(self.first + rows.len(), row, before)?);
+        let [mut before, (after, reduced)] = self.around;
+        let Some((&last, others)) = self.rows.split_last() else { return Ok(&[]) };
+        // What is left over is the last one's.
+        let mut unknowns = self.ratio.iter_mut().zip(&mut self.solution);
+        for ((i, row), (ratio, x)) in (self.first..).zip(others).zip(&mut unknowns) {
+            before = eliminate(i, *row, before)?;
+            (*ratio, *x) = before;
         }
-        self.solution.clear();
-        self.solution.resize(self.rows.len(), DVec3::ZERO);
+        let diagonal = last.diagonal - last.upper * after;
+        let right = last.right - reduced * last.upper;
+        let row = Row { diagonal, right, ..last };
+        for (ratio, x) in unknowns {
+            (*ratio, *x) = eliminate(self.first + others.len(), row, before)?;
+        }
         // Nothing is left of what comes after the last row.
-        let mut after = DVec3::ZERO;
-        for (x, &(ratio, reduced)) in self.solution.iter_mut().zip(&self.eliminated).rev() {
-            *x = reduced - after * ratio;
-            after = *x;
-        }
+        substitute(&self.ratio, &mut self.solution, DVec3::ZERO);
         Ok(&self.solution)
     }
 }

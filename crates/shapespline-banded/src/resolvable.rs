@@ -41,6 +41,20 @@ pub trait Rows {
     fn is_cyclic(&self) -> bool;
     /// Row `i`. In an open system `lower` of the first row and `upper` of the last must be zero.
     fn row(&self, i: usize) -> Row;
+
+    /// Hands rows over one after the other, until one is refused. For systems that make a row at less cost
+    /// when they know which comes next.
+    ///
+    /// # Errors
+    /// That of the row that was refused.
+    #[inline]
+    fn try_each<E>(
+        &self,
+        rows: Range<usize>,
+        mut take: impl FnMut(usize, Row) -> Result<(), E>,
+    ) -> Result<(), E> {
+        rows.into_iter().try_for_each(|i| take(i, self.row(i)))
+    }
 }
 
 /// Relative change from which an unknown counts as touched.

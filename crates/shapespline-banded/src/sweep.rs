@@ -24,8 +24,9 @@ pub(crate) type Eliminated = (f64, DVec3);
 #[inline]
 pub(crate) fn eliminate(i: usize, row: Row, before: Eliminated) -> Result<Eliminated, SolveError> {
     let pivot = usable(i, row.diagonal - row.lower * before.0)?;
-    let reciprocal = 1.0 / pivot;
-    Ok((row.upper * reciprocal, (row.right - before.1 * row.lower) * reciprocal))
+    // Two divisions at once: the next row waits for the first, and would for a product after it.
+    let (ratio, reciprocal) = (row.upper / pivot, 1.0 / pivot);
+    Ok((ratio, (row.right - before.1 * row.lower) * reciprocal))
 }
 
 /// Eliminates every row of an open system. O(n).
@@ -40,11 +41,15 @@ pub(crate) fn eliminate_all<R: Rows + Sync>(
     let n = ratio.len();
     let run = |start: usize, before: Eliminated, ratio: &mut [f64], reduced: &mut [DVec3]| {
         let mut before = before;
-        for (k, (ratio, reduced)) in ratio.iter_mut().zip(reduced).enumerate() {
-            before = eliminate(start + k, rows.row(start + k), before)?;
-            (*ratio, *reduced) = before;
-        }
-        Ok(())
+        let all = start..start + ratio.len();
+        let mut eliminated = ratio.iter_mut().zip(reduced);
+        rows.try_each(all, |i, row| {
+            before = eliminate(i, row, before)?;
+            if let Some((ratio, reduced)) = eliminated.next() {
+                (*ratio, *reduced) = before;
+            }
+            Ok(())
+        })
     };
     let nothing = (0.0, DVec3::ZERO);
     if n < 2 * PART {

@@ -110,7 +110,7 @@ impl CatmullRom {
         let valid = |x: f64| (0.0..1.0).contains(&x);
         let tension = tension.nodal(&polygon, "tension", "in [0, 1)", valid)?;
         let factors = tension.iter().map(|t| 1.0 - t).collect();
-        let (legs, _) = Handles::new(&polygon, factors).into_legs_and_factors();
+        let legs = Handles::new(&polygon, factors).into_legs();
         Self::assemble(polygon, legs, false, tension, continuity)
     }
 
@@ -150,10 +150,10 @@ impl CatmullRom {
             let mut handles = Handles::under_tension(&polygon, legs, factors);
             let rest =
                 SearchOptions { criteria, tolerances, step: 0.25, ..SearchOptions::default() };
-            let searched = search_and_report(&mut handles, &polygon, &rest, monitor)?;
-            (legs, factors) = handles.under_their_tension();
+            let found = search_and_report(&mut handles, &polygon, &rest, monitor)?;
+            (legs, factors) = (found.legs, handles.into_factors());
             checked = false;
-            searched
+            (found.outcome, found.report)
         };
         let (tension, shortened) = tensions(factors);
         outcome.diagnostics.nodes_changed = shortened;

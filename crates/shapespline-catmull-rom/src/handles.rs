@@ -77,18 +77,14 @@ impl<'a> Handles<'a> {
         Self { polygon, legs, factors, tension }
     }
 
-    /// Legs and factors, before any tension.
-    pub(crate) fn into_legs_and_factors(self) -> (Vec<[DVec3; 2]>, Vec<f64>) {
-        (self.legs, self.factors)
+    /// The legs, before any tension.
+    pub(crate) fn into_legs(self) -> Vec<[DVec3; 2]> {
+        self.legs
     }
 
-    /// The same with the tension in them.
-    pub(crate) fn under_their_tension(mut self) -> (Vec<[DVec3; 2]>, Vec<f64>) {
-        self.legs = (0..self.legs.len()).map(|i| self.end_legs(i)).collect();
-        for i in 0..self.factors.len() {
-            self.factors[i] = self.scale(i);
-        }
-        self.into_legs_and_factors()
+    /// The factors, with the tension in them.
+    pub(crate) fn into_factors(self) -> Vec<f64> {
+        (0..self.factors.len()).map(|node| self.scale(node)).collect()
     }
 
     /// What the handles at a node are of the full ones.

@@ -46,7 +46,7 @@ pub use monotone::MonotoneCubic;
 pub use parametrization::Parametrization;
 pub use piecewise::{Domain, PiecewiseCubic};
 pub use piecewise_bezier::{BezierPart, PiecewiseBezier};
-pub use polygon::{DataPolygon, Dimension};
+pub use polygon::{DataPolygon, Dimension, Span};
 pub use ragged::Ragged;
 pub use reparametrized::ReparametrizedCubic;
 pub use segment::CubicSegment;

@@ -39,6 +39,9 @@ impl Dimension {
     }
 }
 
+/// A segment of a polygon: its chord `L_i` and the spacing `h_i` of its parameters.
+pub type Span = (DVec3, f64);
+
 /// Chords from two blocks of this many on are worked on by all threads.
 const BLOCK: usize = 8192;
 
@@ -186,6 +189,22 @@ impl DataPolygon {
     #[must_use]
     pub fn chord(&self, segment: usize) -> DVec3 {
         self.points[segment + 1] - self.points[segment]
+    }
+
+    /// Chord and spacing of a segment.
+    #[inline]
+    #[must_use]
+    pub fn span(&self, segment: usize) -> Span {
+        (self.chord(segment), self.spacing(segment))
+    }
+
+    /// [`DataPolygon::span`] of one segment after the other.
+    #[inline]
+    pub fn spans(&self, segments: Range<usize>) -> impl Iterator<Item = Span> {
+        let nodes = segments.start..segments.end + 1;
+        let points = self.points[nodes.clone()].windows(2);
+        let parameters = self.parameters[nodes].windows(2);
+        points.zip(parameters).map(|(p, u)| (p[1] - p[0], u[1] - u[0]))
     }
 
     #[inline]

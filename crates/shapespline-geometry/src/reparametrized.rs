@@ -54,8 +54,12 @@ impl ReparametrizedCubic {
             let per = "one pair for each segment";
             return Err(InputError::Length { argument: "slopes", expected, found, per });
         }
-        let valid = |x: &f64| *x > 0.0 && *x <= 1.0;
-        if let Some(at) = slopes.as_flattened().iter().position(|x| !valid(x)) {
+        let valid = |x: &f64| (*x > 0.0) & (*x <= 1.0);
+        // Counted first, several at once: mostly there are none to be found.
+        let wrong: u64 = slopes.as_flattened().iter().map(|x| u64::from(!valid(x))).sum();
+        if wrong > 0
+            && let Some(at) = slopes.as_flattened().iter().position(|x| !valid(x))
+        {
             let (argument, allowed) = ("slopes", "in (0, 1]");
             let (index, value) = (at / 2, slopes.as_flattened()[at]);
             return Err(InputError::OutOfRange { argument, index, value, allowed });

@@ -6,7 +6,7 @@ use std::ops::ControlFlow;
 use shapespline_geometry::InputError;
 use shapespline_geometry::{Boundary, DVec3, DataPolygon, PiecewiseCubic};
 use shapespline_search::{
-    Fit, FitError, Interpolant, SearchOptions, SolvedFamily, Step, Tension, per_point,
+    Fit, FitError, Found, Interpolant, SearchOptions, SolvedFamily, Step, Tension, per_point,
     search_and_report, solve_legs,
 };
 
@@ -80,8 +80,8 @@ impl NuSpline {
     ) -> Result<Fit<Self>, FitError> {
         let tension = vec![0.0; polygon.nodes()];
         let mut family = SolvedFamily::new(NuSystem { polygon: &polygon, tension })?;
-        let (outcome, report) = search_and_report(&mut family, &polygon, options, monitor)?;
-        let (legs, NuSystem { tension, .. }) = family.finish();
+        let found = search_and_report(&mut family, &polygon, options, monitor)?;
+        let (Found { legs, outcome, report }, tension) = (found, family.into_system().tension);
         let curve = Self::assemble(polygon, legs, tension)?;
         Ok(Fit { curve, outcome, report })
     }

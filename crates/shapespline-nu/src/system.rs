@@ -1,8 +1,10 @@
 //! The linear system of the tangents.
 
+use std::ops::Range;
+
 use shapespline_banded::{Row, Rows};
-use shapespline_geometry::{DVec3, DataPolygon};
-use shapespline_search::TensionSystem;
+use shapespline_geometry::{DVec3, DataPolygon, Span};
+use shapespline_search::{TensionSystem, try_each_row};
 
 /// The system (3.3)–(3.11) of paper 001 for the tangents `q_i`, each interior row divided by
 /// `h_{i−1} + h_i` so that its matrix has no unit: with `w = h_i/(h_{i−1} + h_i)`
@@ -20,12 +22,16 @@ pub(crate) struct NuSystem<'a> {
 impl NuSystem<'_> {
     #[inline(always)]
     fn interior(&self, before: usize, after: usize, tension: f64) -> Row {
-        let (h0, h1) = (self.polygon.spacing(before), self.polygon.spacing(after));
+        Self::between([before, after].map(|segment| self.polygon.span(segment)), tension)
+    }
+
+    /// The row of a node between two segments.
+    #[inline(always)]
+    fn between([(chord0, h0), (chord1, h1)]: [Span; 2], tension: f64) -> Row {
         // Halves first: the sum of two spacings can overflow where neither does.
         let reciprocal = 1.0 / (0.5 * h0 + 0.5 * h1);
         let (lower, upper) = (0.5 * h1 * reciprocal, 0.5 * h0 * reciprocal);
-        let velocities =
-            self.polygon.chord(before) * (lower / h0) + self.polygon.chord(after) * (upper / h1);
+        let velocities = chord0 * (lower / h0) + chord1 * (upper / h1);
         let diagonal = Self::diagonal(lower, upper, tension);
         Row { lower, diagonal, upper, right: velocities * 3.0 }
     }
@@ -74,6 +80,16 @@ impl Rows for NuSystem<'_> {
             Row { lower, diagonal, upper: 0.0, right }
         }
     }
+
+    #[inline]
+    fn try_each<E>(
+        &self,
+        rows: Range<usize>,
+        take: impl FnMut(usize, Row) -> Result<(), E>,
+    ) -> Result<(), E> {
+        let inside = |i: usize, spans| Self::between(spans, self.tension[i]);
+        try_each_row(self.polygon, rows, inside, |i| self.row(i), take)
+    }
 }
 
 impl TensionSystem for NuSystem<'_> {
@@ -87,8 +103,11 @@ impl TensionSystem for NuSystem<'_> {
         &self.tension
     }
 
-    fn set_tension(&mut self, node: usize, tension: f64, rows: &mut Vec<usize>) {
+    fn set_tension(&mut self, node: usize, tension: f64) {
         self.tension[node] = tension;
+    }
+
+    fn rows_of(&self, node: usize, rows: &mut Vec<usize>) {
         rows.push(node);
     }
 
@@ -132,7 +151,8 @@ mod tests {
                 [(3, 2.0), (0, 0.7), (system.count() - 1, 9.0), (3, 0.0), (4, 1e9)]
             {
                 let mut rows = Vec::new();
-                system.set_tension(node, tension, &mut rows);
+                system.set_tension(node, tension);
+                system.rows_of(node, &mut rows);
                 for i in rows {
                     system.renew(i, &mut kept[i]);
                 }

@@ -130,11 +130,17 @@ pub trait TensionFamily: Sync {
         false
     }
 
-    /// Solves everything anew from the present tensions, trusting nothing stored.
+    /// Solves everything anew from the present tensions, whatever was solved before.
     ///
     /// # Errors
     /// A system that cannot be solved.
     fn solve_again(&mut self) -> Result<(), Self::Error>;
+
+    /// Whether [`TensionFamily::solve_again`] would find what there is: where all segments have been
+    /// touched and checked since, nothing is left to verify.
+    fn all_is_solved(&self) -> bool {
+        false
+    }
 
     /// First and last Bézier leg, `a` and `c`, of a segment.
     fn end_legs(&self, segment: usize) -> [DVec3; 2];

@@ -1,6 +1,7 @@
 //! What a search did.
 
-use shapespline_criteria::Faults;
+use shapespline_criteria::{Faults, ShapeReport};
+use shapespline_geometry::DVec3;
 
 /// How a search ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -78,6 +79,17 @@ impl Outcome {
     }
 }
 
+/// What a search leaves of a curve that is still to be put together.
+#[derive(Debug, Clone)]
+pub struct Found {
+    /// First and last leg of each segment.
+    pub legs: Vec<[DVec3; 2]>,
+    /// How they were found.
+    pub outcome: Outcome,
+    /// The last complete check.
+    pub report: ShapeReport,
+}
+
 /// A curve together with how it was found and what a check says of it.
 #[derive(Debug, Clone)]
 pub struct Fit<C> {
@@ -86,5 +98,5 @@ pub struct Fit<C> {
     /// How it was found; see the status before trusting the curve.
     pub outcome: Outcome,
     /// The last complete check.
-    pub report: shapespline_criteria::ShapeReport,
+    pub report: ShapeReport,
 }

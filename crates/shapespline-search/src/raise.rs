@@ -64,10 +64,13 @@ impl<F: TensionFamily> State<'_, F> {
             let raised = run().filter(|i| nodes.binary_search(i).is_ok());
             levels.extend(raised.map(|i| (i, level * family.weight(i))));
         }
+        // Mostly the nodes are among those that were raised before: both ascend.
+        let mut at = 0;
         for &i in &*nodes {
-            match place(pending, i) {
-                Ok(at) => pending[at].1 = options.raised(pending[at].1),
-                Err(at) => pending.insert(at, (i, options.raised(family.tension()[i]))),
+            at += pending[at..].iter().take_while(|change| change.0 < i).count();
+            match pending.get_mut(at) {
+                Some((node, tension)) if *node == i => *tension = options.raised(*tension),
+                _ => pending.insert(at, (i, options.raised(family.tension()[i]))),
             }
         }
         for (i, level) in levels {

@@ -3,11 +3,11 @@
 use std::ops::ControlFlow;
 
 use shapespline_criteria::{Checker, Faults, ShapeReport, StretchChecker, WindowChecker};
-use shapespline_geometry::DataPolygon;
+use shapespline_geometry::{DVec3, DataPolygon};
 
 use crate::{
-    FitError, Outcome, Phase, SearchOptions, Status, Step, Strategy, TensionFamily, relax::relax,
-    state::State,
+    FitError, Found, Outcome, Phase, SearchOptions, Status, Step, Strategy, TensionFamily,
+    relax::relax, state::State, system::collect,
 };
 
 /// Searches for tensions under which a family's curve keeps the shape of its data.
@@ -28,7 +28,7 @@ pub fn search<F: TensionFamily>(
     search_from(faults, family, windows, options, monitor)
 }
 
-/// [`search`] on the polygon of a family, and the report on the curve that results.
+/// [`search`] on the polygon of a family: the legs that result, and the report on them.
 ///
 /// # Errors
 /// Options outside their range; those of the family's solver.
@@ -37,7 +37,7 @@ pub fn search_and_report<F>(
     polygon: &DataPolygon,
     options: &SearchOptions,
     monitor: &mut dyn FnMut(&Step) -> ControlFlow<()>,
-) -> Result<(Outcome, ShapeReport), FitError>
+) -> Result<Found, FitError>
 where
     F: TensionFamily,
     FitError: From<F::Error>,
@@ -45,18 +45,25 @@ where
     options.validate()?;
     let criteria = StretchChecker::new(polygon, options.criteria, options.tolerances);
     let mut windows = criteria.in_windows();
-    let (faults, applicable) = windows.look(|i| family.end_legs(i));
+    let legs = all_legs(family, polygon);
+    let (faults, applicable) = windows.look(|i| legs[i]);
     let clean = || ShapeReport::clean(polygon.segments(), options.criteria, applicable);
     if faults.is_empty() {
-        return Ok((Outcome::solved(), clean()));
+        return Ok(Found { legs, outcome: Outcome::solved(), report: clean() });
     }
+    drop(legs);
     let outcome = search_from(faults, family, windows, options, monitor)?;
+    let legs = all_legs(family, polygon);
     let report = if outcome.faults.is_empty() {
         clean()
     } else {
-        options.checker(polygon)?.report_of(&outcome.faults, |i| family.end_legs(i))
+        options.checker(polygon)?.report_of(&outcome.faults, |i| legs[i])
     };
-    Ok((outcome, report))
+    Ok(Found { legs, outcome, report })
+}
+
+fn all_legs<F: TensionFamily>(family: &F, polygon: &DataPolygon) -> Vec<[DVec3; 2]> {
+    collect(polygon.segments(), |i| family.end_legs(i))
 }
 
 /// [`search`], the faults of the curve as it is being known.
@@ -86,10 +93,13 @@ fn search_from<F: TensionFamily>(
 }
 
 impl<F: TensionFamily> State<'_, F> {
-    /// Solves and checks everything anew; raises again in the (unseen) case that something fails.
+    /// Solves and checks everything anew, unless that was the last thing done; raises again in the
+    /// (unseen) case that something fails.
     fn verify(&mut self, options: &SearchOptions) -> Result<Status, F::Error> {
         loop {
-            self.solve_and_check_anew()?;
+            if !self.is_verified() {
+                self.solve_and_check_anew()?;
+            }
             self.log(Phase::Verify, self.faults.len(), 0);
             if self.faults.is_empty() {
                 return Ok(Status::Solved);

@@ -1,14 +1,11 @@
 //! A family whose tangents solve a system, kept solved while its tension changes.
 
-use std::{cell::Cell, ops::Range};
+use std::{cell::Cell, convert::Infallible, ops::Range};
 
 use shapespline_banded::{Place, Resolvable, Row, Rows, SolveError};
 use shapespline_geometry::DVec3;
 
-use crate::{
-    TensionFamily, TensionSystem,
-    system::{collect, legs_of},
-};
+use crate::{TensionFamily, TensionSystem, system::legs_of};
 
 /// Rows that are kept: those of short curves, whose search comes back to them again and again.
 const KEPT: usize = 2048;
@@ -35,16 +32,28 @@ impl<S: Rows> Rows for Kept<'_, S> {
             None => self.system.row(i),
         }
     }
+
+    #[inline]
+    fn try_each<E>(
+        &self,
+        rows: Range<usize>,
+        mut take: impl FnMut(usize, Row) -> Result<(), E>,
+    ) -> Result<(), E> {
+        let kept = rows.start.min(self.rows.len())..rows.end.min(self.rows.len());
+        kept.clone().zip(&self.rows[kept.clone()]).try_for_each(|(i, row)| take(i, *row))?;
+        (kept.end.max(rows.start)..rows.end).try_for_each(|i| take(i, self.row(i)))
+    }
 }
 
-/// Rows from which on looking at other tension costs what setting it does.
+/// Rows from which on looking at other tension costs what setting it does. Where a system has no more, a
+/// change is felt by nearly all: all are solved.
 const FEW: usize = 96;
 
 /// A system with its solution, brought up to date where tension changes.
 #[derive(Debug)]
 pub struct SolvedFamily<S> {
     system: S,
-    work: Lent,
+    work: Box<Work>,
 }
 
 /// What solving and looking take; all but the solution is scratch.
@@ -53,7 +62,8 @@ struct Work {
     solver: Resolvable,
     /// Made when tension first changes: most curves need none.
     kept: Vec<Row>,
-    /// The rows that a change of tension changes, and the unknowns.
+    /// The nodes at which tension was changed last, the rows that this changes, and the unknowns.
+    nodes: Vec<usize>,
     rows: Vec<usize>,
     unknowns: Vec<Range<usize>>,
     /// Where looks are taken, and whether the system is still the one that the place was made of.
@@ -63,35 +73,14 @@ struct Work {
     looked: Vec<usize>,
     /// The tensions as they are.
     present: Vec<(usize, f64)>,
+    /// Whether the solution is that of a solve of all rows, and not brought up to date.
+    all_is_solved: bool,
 }
 
 thread_local! {
     /// For the next curve of this thread: short curves come in thousands, and memory for one costs a tenth
     /// of its search.
-    static SPARE: Cell<Work> = Cell::default();
-}
-
-/// Work that goes back to be used again.
-#[derive(Debug)]
-struct Lent(Work);
-
-impl Lent {
-    fn new() -> Self {
-        let mut work = SPARE.try_with(Cell::take).unwrap_or_default();
-        work.kept.clear();
-        work.place_is_valid = false;
-        Self(work)
-    }
-}
-
-impl Drop for Lent {
-    fn drop(&mut self) {
-        if self.0.solver.solution().len() <= KEPT {
-            let work = std::mem::take(&mut self.0);
-            // A thread that ends keeps nothing.
-            let _ = SPARE.try_with(|spare| spare.set(work));
-        }
-    }
+    static SPARE: Cell<Option<Box<Work>>> = const { Cell::new(None) };
 }
 
 impl<S: TensionSystem> SolvedFamily<S> {
@@ -100,15 +89,16 @@ impl<S: TensionSystem> SolvedFamily<S> {
     /// # Errors
     /// A system that f64 cannot hold.
     pub fn new(system: S) -> Result<Self, SolveError> {
-        let mut work = Lent::new();
-        work.0.solver.solve(&system)?;
+        let mut work = Work::spare();
+        work.solver.solve(&system)?;
         Ok(Self { system, work })
     }
 
-    /// End legs of every segment, and the system.
-    pub fn finish(self) -> (Vec<[DVec3; 2]>, S) {
-        let segments = self.system.polygon().segments();
-        (collect(segments, |i| self.end_legs(i)), self.system)
+    /// The system, with the tensions as they are.
+    pub fn into_system(self) -> S {
+        let Self { system, work } = self;
+        work.give_back();
+        system
     }
 
     /// Segments that end or begin at some of the nodes.
@@ -134,25 +124,31 @@ impl<S: TensionSystem> TensionFamily for SolvedFamily<S> {
         changes: &[(usize, f64)],
         touched: &mut Vec<Range<usize>>,
     ) -> Result<(), SolveError> {
-        let Self { system, work: Lent(work) } = self;
+        let Self { system, work } = self;
         work.keep_rows(system);
         work.place_is_valid = false;
         work.change(system, changes);
-        if S::SCALES_LEGS {
-            for &(node, _) in changes {
-                Self::touch(system, node..node + 1, touched);
-            }
-        }
         for &i in &work.rows {
             if let Some(row) = work.kept.get_mut(i) {
                 system.renew(i, row);
             }
         }
-        work.unknowns.clear();
         let kept = Kept { system: &*system, rows: &work.kept };
+        work.all_is_solved = kept.count() <= FEW;
+        if work.all_is_solved {
+            work.solver.solve_again(&kept)?;
+            touched.push(0..system.polygon().segments());
+            return Ok(());
+        }
+        work.unknowns.clear();
         work.solver.update(&kept, &work.rows, &mut work.unknowns)?;
         for nodes in &work.unknowns {
             Self::touch(system, nodes.clone(), touched);
+        }
+        if S::SCALES_LEGS {
+            for &(node, _) in changes {
+                Self::touch(system, node..node + 1, touched);
+            }
         }
         Ok(())
     }
@@ -168,7 +164,7 @@ impl<S: TensionSystem> TensionFamily for SolvedFamily<S> {
         if last.0 - first.0 >= FEW {
             return false;
         }
-        let Self { system, work: Lent(work) } = self;
+        let Self { system, work } = self;
         work.keep_rows(system);
         let present = changes.iter().map(|&(node, _)| (node, system.tension()[node]));
         work.present.clear();
@@ -181,13 +177,18 @@ impl<S: TensionSystem> TensionFamily for SolvedFamily<S> {
     }
 
     fn solve_again(&mut self) -> Result<(), SolveError> {
-        self.work.0.place_is_valid = false;
-        self.work.0.solver.solve_again(&self.system)
+        self.work.place_is_valid = false;
+        self.work.all_is_solved = true;
+        self.work.solver.solve_again(&self.system)
+    }
+
+    fn all_is_solved(&self) -> bool {
+        self.work.all_is_solved
     }
 
     #[inline]
     fn end_legs(&self, segment: usize) -> [DVec3; 2] {
-        legs_of(&self.system, self.work.0.solver.solution(), segment)
+        legs_of(&self.system, self.work.solver.solution(), segment)
     }
 
     fn weight(&self, node: usize) -> f64 {
@@ -196,18 +197,43 @@ impl<S: TensionSystem> TensionFamily for SolvedFamily<S> {
 }
 
 impl Work {
-    fn keep_rows<S: TensionSystem>(&mut self, system: &S) {
-        if self.kept.is_empty() {
-            self.kept.extend((0..system.count().min(KEPT)).map(|i| system.row(i)));
+    fn spare() -> Box<Self> {
+        let mut work = SPARE.try_with(Cell::take).ok().flatten().unwrap_or_default();
+        work.kept.clear();
+        work.nodes.clear();
+        work.rows.clear();
+        work.place_is_valid = false;
+        work
+    }
+
+    fn give_back(self: Box<Self>) {
+        if self.solver.solution().len() <= KEPT {
+            // A thread that ends keeps nothing.
+            let _ = SPARE.try_with(|spare| spare.set(Some(self)));
         }
     }
 
-    /// Sets tensions in the system, and finds the rows that change.
-    fn change<S: TensionSystem>(&mut self, system: &mut S, changes: &[(usize, f64)]) {
-        self.rows.clear();
-        for &(node, tension) in changes {
-            system.set_tension(node, tension, &mut self.rows);
+    fn keep_rows<S: TensionSystem>(&mut self, system: &S) {
+        if self.kept.is_empty() {
+            let few = 0..system.count().min(KEPT);
+            let Ok(()) = system.try_each(few, |_, row| {
+                self.kept.push(row);
+                Ok::<(), Infallible>(())
+            });
         }
+    }
+
+    /// Sets tensions in the system, and finds the rows that change: mostly those of the last time.
+    fn change<S: TensionSystem>(&mut self, system: &mut S, changes: &[(usize, f64)]) {
+        changes.iter().for_each(|&(node, tension)| system.set_tension(node, tension));
+        let nodes = || changes.iter().map(|change| change.0);
+        if self.nodes.iter().copied().eq(nodes()) {
+            return;
+        }
+        self.nodes.clear();
+        self.nodes.extend(nodes());
+        self.rows.clear();
+        nodes().for_each(|node| system.rows_of(node, &mut self.rows));
         if !self.rows.is_sorted_by(|a, b| a < b) {
             self.rows.sort_unstable();
             self.rows.dedup();
@@ -215,9 +241,9 @@ impl Work {
     }
 
     /// Sets the tensions again that were there before.
-    fn restore<S: TensionSystem>(&mut self, system: &mut S) {
+    fn restore<S: TensionSystem>(&self, system: &mut S) {
         for &(node, tension) in &self.present {
-            system.set_tension(node, tension, &mut self.rows);
+            system.set_tension(node, tension);
         }
     }
 
@@ -301,8 +327,10 @@ mod tests {
         fn tension(&self) -> &[f64] {
             &self.tension
         }
-        fn set_tension(&mut self, node: usize, tension: f64, rows: &mut Vec<usize>) {
+        fn set_tension(&mut self, node: usize, tension: f64) {
             self.tension[node] = tension;
+        }
+        fn rows_of(&self, node: usize, rows: &mut Vec<usize>) {
             let n = self.count();
             let inside = |&row: &usize| self.is_cyclic() || row > 0 && row <= n;
             // Counted from one.
@@ -373,6 +401,39 @@ mod tests {
                 }
             }
         }
+    }
+
+    /// To the bit, and every segment is to be checked.
+    #[test]
+    fn of_few_rows_all_are_solved() {
+        for boundary in [Boundary::ZeroCurvature, Boundary::Periodic] {
+            let (mut family, n) = (family(FEW - 1, boundary), FEW - 1);
+            assert!(!family.all_is_solved());
+            for (changes, again) in
+                [(vec![(3, 2.0), (9, 0.5)], false), (vec![(3, 7.0)], true), (vec![(9, 0.0)], false)]
+            {
+                let mut touched = Vec::new();
+                family.set_tension(&changes, &mut touched).unwrap();
+                assert!(family.all_is_solved());
+                assert_eq!(touched.as_slice(), std::slice::from_ref(&(0..n)));
+                let set: Vec<_> = (0..n).map(|i| family.end_legs(i)).collect();
+                if again {
+                    family.solve_again().unwrap();
+                    assert!(family.all_is_solved());
+                }
+                let Planted { polygon, tension } = &family.system;
+                let fresh = Planted { polygon: polygon.clone(), tension: tension.clone() };
+                let fresh = SolvedFamily::new(fresh).unwrap();
+                assert!(
+                    (0..n).all(|i| set[i] == fresh.end_legs(i) && set[i] == family.end_legs(i))
+                );
+            }
+        }
+        // Of many, those that a change is felt by.
+        let (mut family, mut touched) = (family(500, Boundary::ZeroCurvature), Vec::new());
+        family.set_tension(&[(250, 2.0)], &mut touched).unwrap();
+        assert!(!family.all_is_solved());
+        assert!(touched.iter().all(|range| 150 < range.start && range.end < 350));
     }
 
     #[test]

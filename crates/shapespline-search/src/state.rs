@@ -26,6 +26,8 @@ pub(crate) struct State<'s, F> {
     touched: Vec<Range<usize>>,
     /// What a trial that failed left unchecked.
     unchecked: Vec<Range<usize>>,
+    /// Whether all was solved at once and nothing of it failed.
+    verified: bool,
     /// The segment on which the last trial failed: the first to be looked at in the next one.
     pub(crate) suspect: usize,
     /// Whether the curve without any tension is known to have faults: mostly the search began with it.
@@ -58,6 +60,7 @@ impl<'s, F: TensionFamily> State<'s, F> {
             faults,
             touched: Vec::with_capacity(16),
             unchecked: Vec::new(),
+            verified: false,
             suspect: 0,
             plain_fails,
             pending: Vec::with_capacity(32),
@@ -76,6 +79,11 @@ impl<'s, F: TensionFamily> State<'s, F> {
         self.windows.polygon().is_closed()
     }
 
+    /// Whether the curve as it is was solved as a whole, and no segment of it failed.
+    pub(crate) fn is_verified(&self) -> bool {
+        self.verified
+    }
+
     pub(crate) fn untouched(&self) -> bool {
         self.history.is_empty()
     }
@@ -85,6 +93,7 @@ impl<'s, F: TensionFamily> State<'s, F> {
         self.solves += 1;
         let family = &*self.family;
         self.faults = self.windows.all_faults(|i| family.end_legs(i));
+        self.verified = self.faults.is_empty();
         Ok(())
     }
 
@@ -152,6 +161,7 @@ impl<'s, F: TensionFamily> State<'s, F> {
         if let Some(&(segment, _)) = self.faults.first() {
             self.suspect = segment;
         }
+        self.verified = self.faults.is_empty() && self.checks_all();
         Ok(())
     }
 
@@ -171,14 +181,22 @@ impl<'s, F: TensionFamily> State<'s, F> {
             self.suspect = segment;
             std::mem::swap(&mut self.unchecked, &mut self.touched);
         }
+        self.verified = fault.is_none() && self.checks_all();
         Ok(fault.is_none())
     }
 
     /// Sets tensions under which the curve is known to have no faults: solved, not checked again.
     pub(crate) fn return_to(&mut self, changes: &[(usize, f64)]) -> Result<(), F::Error> {
         self.solve(changes)?;
+        self.verified = self.checks_all();
         self.touched.clear();
         Ok(())
+    }
+
+    /// Whether the last solve was one of all, and touched every segment.
+    fn checks_all(&self) -> bool {
+        let all = 0..self.windows.polygon().segments();
+        self.family.all_is_solved() && self.touched == [all]
     }
 
     /// Sets tensions and finds what has to be checked.

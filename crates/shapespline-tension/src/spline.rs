@@ -8,7 +8,7 @@ use shapespline_geometry::{
     Boundary, DVec3, DataPolygon, InputError, PiecewiseCubic, ReparametrizedCubic,
 };
 use shapespline_search::{
-    Fit, FitError, Interpolant, SearchOptions, SolvedFamily, Step, Tension, per_point,
+    Fit, FitError, Found, Interpolant, SearchOptions, SolvedFamily, Step, Tension, per_point,
     search_and_report, solve_legs,
 };
 
@@ -135,8 +135,8 @@ impl TensionSpline {
         monitor: &mut dyn FnMut(&Step) -> ControlFlow<()>,
     ) -> Result<Fit<Self>, FitError> {
         let mut family = SolvedFamily::new(MannisSystem::without_tension(&polygon))?;
-        let (outcome, report) = search_and_report(&mut family, &polygon, options, monitor)?;
-        let (legs, system) = family.finish();
+        let found = search_and_report(&mut family, &polygon, options, monitor)?;
+        let (Found { legs, outcome, report }, system) = (found, family.into_system());
         let (slopes, tension) = system.into_parts();
         let curve = Self::assemble(polygon, legs, slopes, tension)?;
         Ok(Fit { curve, outcome, report })

@@ -1,8 +1,10 @@
 //! The linear system of the tangents.
 
+use std::ops::Range;
+
 use shapespline_banded::{Row, Rows};
-use shapespline_geometry::{DVec3, DataPolygon};
-use shapespline_search::{TensionSystem, velocity_weight};
+use shapespline_geometry::{DVec3, DataPolygon, Span};
+use shapespline_search::{TensionSystem, try_each_row, velocity_weight};
 
 /// The system (3.7)–(3.8) of paper 000 for the tangents `T_i`, each row divided by
 /// `h_{i−1}(h_iλ⁰_i)² + h_i(h_{i−1}λ¹_{i−1})²` so that its matrix has no unit (see the crate's page).
@@ -51,10 +53,14 @@ impl<'a> MannisSystem<'a> {
 
     #[inline(always)]
     fn interior(&self, before: usize, after: usize) -> Row {
-        let (h0, h1) = (self.polygon.spacing(before), self.polygon.spacing(after));
+        self.between([before, after], [before, after].map(|segment| self.polygon.span(segment)))
+    }
+
+    /// The row of a node between two segments.
+    #[inline(always)]
+    fn between(&self, [before, after]: [usize; 2], [(chord0, h0), (chord1, h1)]: [Span; 2]) -> Row {
         let [w, v] = weights([h0, h1], [self.slopes[before][1], self.slopes[after][0]]);
-        let velocities =
-            self.polygon.chord(before) * (w / h0) + self.polygon.chord(after) * (v / h1);
+        let velocities = chord0 * (w / h0) + chord1 * (v / h1);
         let [lower, diagonal, upper] = self.coefficients([before, after], [w, v]);
         Row { lower, diagonal, upper, right: velocities * 3.0 }
     }
@@ -120,6 +126,16 @@ impl Rows for MannisSystem<'_> {
             Row { lower, diagonal, upper: 0.0, right }
         }
     }
+
+    #[inline]
+    fn try_each<E>(
+        &self,
+        rows: Range<usize>,
+        take: impl FnMut(usize, Row) -> Result<(), E>,
+    ) -> Result<(), E> {
+        let inside = |i: usize, spans| self.between([i - 1, i], spans);
+        try_each_row(self.polygon, rows, inside, |i| self.row(i), take)
+    }
 }
 
 impl TensionSystem for MannisSystem<'_> {
@@ -134,27 +150,25 @@ impl TensionSystem for MannisSystem<'_> {
     }
 
     /// One `λ` for both sides of the node: Lemmas 4.2–4.3 need their ratio bounded.
-    fn set_tension(&mut self, node: usize, tension: f64, rows: &mut Vec<usize>) {
+    fn set_tension(&mut self, node: usize, tension: f64) {
         self.tension[node] = tension;
         let lambda = 1.0 / (1.0 + tension);
-        let (n, closed) = (self.polygon.segments(), self.polygon.is_closed());
-        // The own row depends on it through the ratio of the two, and next to a natural end. Nodes mostly
-        // come one after the other: rows that two of them share are named once.
-        let mut name = |row: usize| {
-            let named = rows.len();
-            if !(named > 0 && rows[named - 1] == row || named > 1 && rows[named - 2] == row) {
-                rows.push(row);
-            }
-        };
-        if node > 0 || closed {
-            let before = if node > 0 { node - 1 } else { n - 1 };
-            self.slopes[before][1] = lambda;
-            name(before);
+        let n = self.polygon.segments();
+        if node > 0 || self.polygon.is_closed() {
+            self.slopes[if node > 0 { node - 1 } else { n - 1 }][1] = lambda;
         }
-        name(node);
         if node < n {
             self.slopes[node][0] = lambda;
-            name(if closed { (node + 1) % n } else { node + 1 });
+        }
+    }
+
+    /// The own row depends on it through the ratio of the two, and next to a natural end.
+    fn rows_of(&self, node: usize, rows: &mut Vec<usize>) {
+        let n = self.polygon.segments();
+        if self.polygon.is_closed() {
+            rows.extend([(node + n - 1) % n, node, (node + 1) % n]);
+        } else {
+            rows.extend(node.saturating_sub(1)..=(node + 1).min(n));
         }
     }
 
@@ -210,7 +224,8 @@ mod tests {
                     [(3, 2.0), (0, 0.7), (system.count() - 1, 9.0), (3, 0.0), (4, 1e9)]
                 {
                     let mut rows = Vec::new();
-                    system.set_tension(node, tension, &mut rows);
+                    system.set_tension(node, tension);
+                    system.rows_of(node, &mut rows);
                     for i in rows {
                         system.renew(i, &mut kept[i]);
                     }
