@@ -187,8 +187,9 @@ def fit_many(
 
     Notes
     -----
-    Other Python threads run meanwhile. Each curve is fitted as by its class: algorithm, guarantee
-    and sources are there. Cost O(n), and what the violations need.
+    Other Python threads run meanwhile; an array of points is read where it is, so they must leave
+    it as it is. Each curve is fitted as by its class: algorithm, guarantee and sources are there.
+    Cost O(n), and what the violations need.
 
     Examples
     --------
