@@ -32,6 +32,7 @@ mod solved;
 mod state;
 mod system;
 mod tension;
+mod work;
 
 pub use error::FitError;
 pub use family::{TensionFamily, velocity_weight};

@@ -1,53 +1,11 @@
 //! A family whose tangents solve a system, kept solved while its tension changes.
 
-use std::{cell::Cell, convert::Infallible, ops::Range};
+use std::ops::Range;
 
-use shapespline_banded::{Place, Resolvable, Row, Rows, SolveError};
+use shapespline_banded::SolveError;
 use shapespline_geometry::DVec3;
 
-use crate::{TensionFamily, TensionSystem, system::legs_of};
-
-/// Rows that are kept: those of short curves, whose search comes back to them again and again.
-const KEPT: usize = 2048;
-
-/// A system whose first rows are kept as they were made.
-struct Kept<'s, S> {
-    system: &'s S,
-    rows: &'s [Row],
-}
-
-impl<S: Rows> Rows for Kept<'_, S> {
-    fn count(&self) -> usize {
-        self.system.count()
-    }
-
-    fn is_cyclic(&self) -> bool {
-        self.system.is_cyclic()
-    }
-
-    #[inline]
-    fn row(&self, i: usize) -> Row {
-        match self.rows.get(i) {
-            Some(row) => *row,
-            None => self.system.row(i),
-        }
-    }
-
-    #[inline]
-    fn try_each<E>(
-        &self,
-        rows: Range<usize>,
-        mut take: impl FnMut(usize, Row) -> Result<(), E>,
-    ) -> Result<(), E> {
-        let kept = rows.start.min(self.rows.len())..rows.end.min(self.rows.len());
-        kept.clone().zip(&self.rows[kept.clone()]).try_for_each(|(i, row)| take(i, *row))?;
-        (kept.end.max(rows.start)..rows.end).try_for_each(|i| take(i, self.row(i)))
-    }
-}
-
-/// Rows from which on looking at other tension costs what setting it does. Where a system has no more, a
-/// change is felt by nearly all: all are solved.
-const FEW: usize = 96;
+use crate::{TensionFamily, TensionSystem, system::legs_of, work::Work};
 
 /// A system with its solution, brought up to date where tension changes.
 #[derive(Debug)]
@@ -56,48 +14,20 @@ pub struct SolvedFamily<S> {
     work: Box<Work>,
 }
 
-/// What solving and looking take; all but the solution is scratch.
-#[derive(Debug, Default)]
-struct Work {
-    solver: Resolvable,
-    /// Made when tension first changes: most curves need none.
-    kept: Vec<Row>,
-    /// The nodes at which tension was changed last, the rows that this changes, and the unknowns.
-    nodes: Vec<usize>,
-    rows: Vec<usize>,
-    unknowns: Vec<Range<usize>>,
-    /// Where looks are taken, and whether the system is still the one that the place was made of.
-    place: Place,
-    place_is_valid: bool,
-    /// Rows of the place that are those of the last look.
-    looked: Vec<usize>,
-    /// The tensions as they are.
-    present: Vec<(usize, f64)>,
-    /// Whether the solution is that of a solve of all rows, and not brought up to date.
-    all_is_solved: bool,
-}
-
-thread_local! {
-    /// For the next curve of this thread: short curves come in thousands, and memory for one costs a tenth
-    /// of its search.
-    static SPARE: Cell<Option<Box<Work>>> = const { Cell::new(None) };
-}
-
 impl<S: TensionSystem> SolvedFamily<S> {
     /// Solves the system as it is. O(N).
     ///
     /// # Errors
     /// A system that f64 cannot hold.
     pub fn new(system: S) -> Result<Self, SolveError> {
-        let mut work = Work::spare();
-        work.solver.solve(&system)?;
+        let work = Work::begin(&system)?;
         Ok(Self { system, work })
     }
 
     /// The system, with the tensions as they are.
     pub fn into_system(self) -> S {
         let Self { system, work } = self;
-        work.give_back();
+        work.end();
         system
     }
 
@@ -125,24 +55,11 @@ impl<S: TensionSystem> TensionFamily for SolvedFamily<S> {
         touched: &mut Vec<Range<usize>>,
     ) -> Result<(), SolveError> {
         let Self { system, work } = self;
-        work.keep_rows(system);
-        work.place_is_valid = false;
-        work.change(system, changes);
-        for &i in &work.rows {
-            if let Some(row) = work.kept.get_mut(i) {
-                system.renew(i, row);
-            }
-        }
-        let kept = Kept { system: &*system, rows: &work.kept };
-        work.all_is_solved = kept.count() <= FEW;
-        if work.all_is_solved {
-            work.solver.solve_again(&kept)?;
+        let Some(unknowns) = work.set(system, changes)? else {
             touched.push(0..system.polygon().segments());
             return Ok(());
-        }
-        work.unknowns.clear();
-        work.solver.update(&kept, &work.rows, &mut work.unknowns)?;
-        for nodes in &work.unknowns {
+        };
+        for nodes in unknowns {
             Self::touch(system, nodes.clone(), touched);
         }
         if S::SCALES_LEGS {
@@ -159,36 +76,20 @@ impl<S: TensionSystem> TensionFamily for SolvedFamily<S> {
         segments: Range<usize>,
         legs: &mut Vec<[DVec3; 2]>,
     ) -> bool {
-        legs.clear();
-        let (Some(first), Some(last)) = (changes.first(), changes.last()) else { return false };
-        if last.0 - first.0 >= FEW {
-            return false;
-        }
-        let Self { system, work } = self;
-        work.keep_rows(system);
-        let present = changes.iter().map(|&(node, _)| (node, system.tension()[node]));
-        work.present.clear();
-        work.present.extend(present);
-        work.change(system, changes);
-        // What cannot be solved is no answer: to set the tension will say why.
-        let looked = work.look(system, changes, segments, legs).unwrap_or(false);
-        work.restore(system);
-        looked
+        self.work.legs_under(&mut self.system, changes, segments, legs)
     }
 
     fn solve_again(&mut self) -> Result<(), SolveError> {
-        self.work.place_is_valid = false;
-        self.work.all_is_solved = true;
-        self.work.solver.solve_again(&self.system)
+        self.work.solve_again(&self.system)
     }
 
     fn all_is_solved(&self) -> bool {
-        self.work.all_is_solved
+        self.work.all_is_solved()
     }
 
     #[inline]
     fn end_legs(&self, segment: usize) -> [DVec3; 2] {
-        legs_of(&self.system, self.work.solver.solution(), segment)
+        legs_of(&self.system, self.work.solution(), segment)
     }
 
     fn weight(&self, node: usize) -> f64 {
@@ -196,104 +97,14 @@ impl<S: TensionSystem> TensionFamily for SolvedFamily<S> {
     }
 }
 
-impl Work {
-    fn spare() -> Box<Self> {
-        let mut work = SPARE.try_with(Cell::take).ok().flatten().unwrap_or_default();
-        work.kept.clear();
-        work.nodes.clear();
-        work.rows.clear();
-        work.place_is_valid = false;
-        work
-    }
-
-    fn give_back(self: Box<Self>) {
-        if self.solver.solution().len() <= KEPT {
-            // A thread that ends keeps nothing.
-            let _ = SPARE.try_with(|spare| spare.set(Some(self)));
-        }
-    }
-
-    fn keep_rows<S: TensionSystem>(&mut self, system: &S) {
-        if self.kept.is_empty() {
-            let few = 0..system.count().min(KEPT);
-            let Ok(()) = system.try_each(few, |_, row| {
-                self.kept.push(row);
-                Ok::<(), Infallible>(())
-            });
-        }
-    }
-
-    /// Sets tensions in the system, and finds the rows that change: mostly those of the last time.
-    fn change<S: TensionSystem>(&mut self, system: &mut S, changes: &[(usize, f64)]) {
-        changes.iter().for_each(|&(node, tension)| system.set_tension(node, tension));
-        let nodes = || changes.iter().map(|change| change.0);
-        if self.nodes.iter().copied().eq(nodes()) {
-            return;
-        }
-        self.nodes.clear();
-        self.nodes.extend(nodes());
-        self.rows.clear();
-        nodes().for_each(|node| system.rows_of(node, &mut self.rows));
-        if !self.rows.is_sorted_by(|a, b| a < b) {
-            self.rows.sort_unstable();
-            self.rows.dedup();
-        }
-    }
-
-    /// Sets the tensions again that were there before.
-    fn restore<S: TensionSystem>(&self, system: &mut S) {
-        for &(node, tension) in &self.present {
-            system.set_tension(node, tension);
-        }
-    }
-
-    /// The legs of some segments under the changes, which have been made in the system alone. False where
-    /// that takes more than a few rows.
-    fn look<S: TensionSystem>(
-        &mut self,
-        system: &mut S,
-        changes: &[(usize, f64)],
-        segments: Range<usize>,
-        legs: &mut Vec<[DVec3; 2]>,
-    ) -> Result<bool, SolveError> {
-        let (Some(&first), Some(&last)) = (self.rows.first(), self.rows.last()) else {
-            return Ok(false);
-        };
-        // The last segment of closed data ends where the first begins, in no few rows.
-        let rows = first.min(segments.start)..(last + 1).max(segments.end + 1);
-        if rows.len() > FEW || rows.end > system.count() {
-            return Ok(false);
-        }
-        let place = self.place.rows();
-        if !(self.place_is_valid && place.start <= rows.start && rows.end <= place.end) {
-            self.restore(system);
-            let kept = Kept { system: &*system, rows: &self.kept };
-            self.place_is_valid = self.place.go(&self.solver, &kept, rows)?;
-            self.looked.clear();
-            self.change(system, changes);
-        }
-        if !self.place_is_valid {
-            return Ok(false);
-        }
-        if self.looked != self.rows {
-            let kept = Kept { system: &*system, rows: &self.kept };
-            self.looked.iter().for_each(|&i| *self.place.row_mut(i) = kept.row(i));
-            self.looked.clone_from(&self.rows);
-        }
-        self.rows.iter().for_each(|&i| system.renew(i, self.place.row_mut(i)));
-        let skipped = segments.start - self.place.rows().start;
-        let tangents = self.place.solve()?[skipped..].windows(2);
-        legs.extend(segments.zip(tangents).map(|(i, ends)| system.legs(i, [ends[0], ends[1]])));
-        Ok(true)
-    }
-}
-
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used)]
+    use shapespline_banded::{Row, Rows};
     use shapespline_geometry::{Boundary, DataPolygon, Parametrization};
 
     use super::*;
+    use crate::work::{FEW, KEPT};
 
     /// Tension that changes the rows beside a node as well, and the legs.
     struct Planted {
@@ -408,7 +219,7 @@ mod tests {
     fn of_few_rows_all_are_solved() {
         for boundary in [Boundary::ZeroCurvature, Boundary::Periodic] {
             let (mut family, n) = (family(FEW - 1, boundary), FEW - 1);
-            assert!(!family.all_is_solved());
+            assert!(family.all_is_solved());
             for (changes, again) in
                 [(vec![(3, 2.0), (9, 0.5)], false), (vec![(3, 7.0)], true), (vec![(9, 0.0)], false)]
             {
