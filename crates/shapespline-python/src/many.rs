@@ -46,8 +46,11 @@ fn run<'py>(
 ) -> PyResult<(Bound<'py, PyTuple>, Bound<'py, PyDict>)> {
     let Rows { points, offsets, parametrization, boundary, threads } = rows;
     // A line that every option suits: an error now is the options', not that of any curve.
-    let line = vec![DVec3::ZERO, DVec3::X];
-    let line = DataPolygon::new(line, &Parametrization::Uniform, Boundary::ZeroCurvature);
+    let named = match &parametrization {
+        Parametrization::Given(_) => &Parametrization::Uniform,
+        named => named,
+    };
+    let line = DataPolygon::new(vec![DVec3::ZERO, DVec3::X], named, Boundary::ZeroCurvature);
     make(line.map_err(input_error)?, &|| ControlFlow::Continue(())).map_err(fit_error)?;
 
     let dimension = points.dimension;
