@@ -13,13 +13,15 @@ mod cyclic;
 mod error;
 mod place;
 mod resolvable;
+mod rows;
 mod sweep;
 mod tridiagonal;
 
 pub use cyclic::solve_cyclic;
 pub use error::SolveError;
 pub use place::Place;
-pub use resolvable::{Resolvable, Row, Rows, solve_once};
+pub use resolvable::{Resolvable, solve_once};
+pub use rows::{Row, Rows};
 pub use tridiagonal::{RightHandSide, solve_tridiagonal};
 
 /// The examples of the README are run as tests.

@@ -9,7 +9,7 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use crate::{Rows, SolveError, error::usable, resolvable::Row};
+use crate::{Row, Rows, SolveError, error::usable};
 
 /// Rows a part.
 const PART: usize = 16_384;

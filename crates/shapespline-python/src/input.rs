@@ -113,7 +113,7 @@ fn made<const N: usize>(
     detached(py, rows.len(), || rows.par_iter().with_min_len(MANY).map(make).collect())
 }
 
-/// The caller's own array of points: `(n, 2)` or `(n, 3)`.
+/// An array of points, `(n, 2)` or `(n, 3)`: the caller's own where that is f64 in C order.
 pub(crate) struct PointArray<'py> {
     array: Array<'py>,
     pub(crate) dimension: Dimension,

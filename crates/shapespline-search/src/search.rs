@@ -3,11 +3,13 @@
 use std::ops::ControlFlow;
 
 use shapespline_criteria::{Checker, Faults, ShapeReport, StretchChecker, WindowChecker};
-use shapespline_geometry::{DVec3, DataPolygon};
+use shapespline_geometry::DataPolygon;
 
 use crate::{
     FitError, Found, Outcome, Phase, SearchOptions, Status, Step, Strategy, TensionFamily,
-    relax::relax, state::State, system::collect,
+    relax::relax,
+    state::State,
+    system::{collect, refill},
 };
 
 /// Searches for tensions under which a family's curve keeps the shape of its data.
@@ -45,25 +47,20 @@ where
     options.validate()?;
     let criteria = StretchChecker::new(polygon, options.criteria, options.tolerances);
     let mut windows = criteria.in_windows();
-    let legs = all_legs(family, polygon);
+    let mut legs = collect(polygon.segments(), |i| family.end_legs(i));
     let (faults, applicable) = windows.look(|i| legs[i]);
     let clean = || ShapeReport::clean(polygon.segments(), options.criteria, applicable);
     if faults.is_empty() {
         return Ok(Found { legs, outcome: Outcome::solved(), report: clean() });
     }
-    drop(legs);
     let outcome = search_from(faults, family, windows, options, monitor)?;
-    let legs = all_legs(family, polygon);
+    refill(&mut legs, |i| family.end_legs(i));
     let report = if outcome.faults.is_empty() {
         clean()
     } else {
         options.checker(polygon)?.report_of(&outcome.faults, |i| legs[i])
     };
     Ok(Found { legs, outcome, report })
-}
-
-fn all_legs<F: TensionFamily>(family: &F, polygon: &DataPolygon) -> Vec<[DVec3; 2]> {
-    collect(polygon.segments(), |i| family.end_legs(i))
 }
 
 /// [`search`], the faults of the curve as it is being known.
@@ -93,8 +90,8 @@ fn search_from<F: TensionFamily>(
 }
 
 impl<F: TensionFamily> State<'_, F> {
-    /// Solves and checks everything anew, unless that was the last thing done; raises again in the
-    /// (unseen) case that something fails.
+    /// Solves and checks everything anew, unless the curve as it is was solved as a whole and no segment of
+    /// it failed; raises again in the (unseen) case that something fails.
     fn verify(&mut self, options: &SearchOptions) -> Result<Status, F::Error> {
         loop {
             if !self.is_verified() {

@@ -64,7 +64,7 @@ pub(crate) struct Work {
     place_is_valid: bool,
     /// Rows of the place that are those of the last look.
     looked: Vec<usize>,
-    /// The tensions as they are.
+    /// The tensions that a look sets aside: those of its nodes as they are.
     present: Vec<(usize, f64)>,
     /// Whether the solution is that of a solve of all rows, and not brought up to date.
     all_is_solved: bool,
