@@ -1,6 +1,7 @@
 # Every target sets up what it needs; a second run only does what changed.
 #   make demo    shape-preserving curves through real data, printed and drawn to out/demo
-#   make test    the Rust tests, then the Python tests
+#   make test    the Rust tests, then the Python tests; large generators run a tenth of their cases
+#   make test-long  the same with every generated case (takes long)
 #   make check   formatting, lints, stubs, types, `make test`, then `make docs`: what CI runs
 #   make bench   speed and memory beside SciPy's, as one table
 #   make docs    the documentation of both languages in site/: pages and notebooks executed, warnings are errors
@@ -32,14 +33,18 @@ BENCH ?=
 # Seconds for each fuzz target.
 FUZZ ?= 60
 
-.PHONY: demo test test-rust test-python check lint-rust lint-python bench docs packages powerset fuzz clean extension \
-	cargo
+.PHONY: demo test test-long test-rust test-python check lint-rust lint-python bench docs packages powerset fuzz clean \
+	extension cargo
 .DELETE_ON_ERROR:
 
 demo: extension
 	$(BIN)/shapespline demo --out out/demo
 
 test: test-rust test-python
+
+# tests/scale.py and `shapespline_tests::scaled` read the variable.
+test-long: export SHAPESPLINE_TESTS := long
+test-long: test
 
 test-rust: cargo
 	$(CARGO_TEST)

@@ -10,6 +10,14 @@ use std::path::Path;
 
 use shapespline::prelude::*;
 
+/// How many of `n` generated cases to run: all of them where the environment variable
+/// `SHAPESPLINE_TESTS` is `long` (`make test-long` sets it), else a tenth.
+#[must_use]
+pub fn scaled(n: usize) -> usize {
+    let long = std::env::var_os("SHAPESPLINE_TESTS").is_some_and(|value| value == "long");
+    if long { n } else { (n / 10).max(1) }
+}
+
 /// Rows of a CSV file of `tests/data`: numbers only, comments and the header line left out.
 #[must_use]
 pub fn rows(name: &str) -> Vec<Vec<f64>> {

@@ -1,0 +1,11 @@
+"""How much the large generators of the tests run: a tenth, or everything in `make test-long`."""
+
+import os
+
+#: whether the large generators run whole
+LONG = os.environ.get("SHAPESPLINE_TESTS") == "long"
+
+
+def scaled(n: int) -> int:
+    """Return how many of ``n`` generated cases to run: all in `make test-long`, else a tenth."""
+    return n if LONG else max(1, n // 10)
