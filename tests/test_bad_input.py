@@ -261,10 +261,14 @@ BAD_KINDS = {
 @pytest.mark.parametrize("name", BAD_VALUES)
 def test_bad_value(name):
     bad, pieces = BAD_VALUES[name]
-    with pytest.raises(ValueError) as caught:
+    with pytest.raises(ss.InputError) as caught:
         bad()
-    assert not isinstance(caught.value, ss.ConvergenceError)
     message = str(caught.value)
+    # What the text says, the attributes say.
+    index = np.atleast_1d([] if caught.value.index is None else caught.value.index)
+    place = "".join(f"[{i}]" for i in index)
+    assert f"{caught.value.argument}{place}" in message
+    assert any(piece.partition("[")[0] == caught.value.argument for piece in pieces)
     assert [piece for piece in pieces if piece.lower() not in message.lower()] == [], message
 
 

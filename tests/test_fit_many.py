@@ -111,7 +111,9 @@ def test_faults_are_those_of_their_curves_alone(method):
     pieces = {1: ["curve 1", "points[1]", "points[0]"], 3: ["curve 3", "points[1", "nan"],
               5: ["curve 5", "points", "0"]}  # fmt: skip
     for k, error in fits.errors.items():
-        assert type(error) is ValueError
+        assert type(error) is ss.InputError
+        # A whole curve, or the second point of one.
+        assert (error.argument, error.index) == ("points", 5 if k == 5 else (k, 1))
         text = str(error).lower()
         assert [piece for piece in pieces[k] if piece not in text] == [], text
     for k in (0, 2, 4, 6):

@@ -32,7 +32,7 @@ from shapespline._core import (
     bezier_like,
     fit_many_monotone,
 )
-from shapespline._errors import ConvergenceError
+from shapespline._errors import ConvergenceError, InputError
 from shapespline._many import Fits, fit_many
 from shapespline._polygon import PolygonShape, polygon_shape
 from shapespline._records import NodeRecord, OscillationRecord, UndecidedRecord
@@ -44,6 +44,7 @@ __all__ = [
     "Diagnostics",
     "Fits",
     "InflectionCount",
+    "InputError",
     "MonotoneDiagnostics",
     "MonotoneQuartic",
     "MonotoneQuintic",

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from shapespline._core import MonotoneSpline, PiecewiseBezier, SpaceCurve
+from shapespline._errors import InputError
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -31,9 +32,11 @@ def _coefficients(name: str, values: Any, *, leading: int) -> Floats:
     if array.ndim == leading:
         array = array[..., None]
     if array.ndim != leading + 1 or array.shape[-1] not in (1, 2, 3):
-        raise ValueError(
+        raise InputError(
             f"{name} must belong to a curve in the plane or in space, or to a function; got shape "
-            f"{np.shape(values)}"
+            f"{np.shape(values)}",
+            name,
+            value=np.shape(values),
         )
     return array.astype(float, copy=False)
 
@@ -48,7 +51,7 @@ def _of_bspline(curve: Any) -> PiecewiseBezier:
     if control.shape[1] == 1:
         # The graph of a function: x is a B-spline with Greville's abscissae.
         if degree < 1:
-            raise ValueError("degree must be at least 1, got 0")
+            raise InputError("degree must be at least 1, got 0", "degree", value=0)
         windows = np.lib.stride_tricks.sliding_window_view(knots[1:-1], degree)
         control = np.column_stack([windows.mean(axis=1)[: len(control)], control])
     return PiecewiseBezier.from_bspline(knots, control, degree)
@@ -74,7 +77,8 @@ def _of_monotone(f: MonotoneSpline) -> PiecewiseBezier:
     Hermite form, which (7) is with second derivatives in place of α and β.
     """
     if f.y.ndim != 1:
-        raise ValueError(f"the function must have one column to be a curve, got y of {f.y.shape}")
+        text = f"the function must have one column to be a curve, got y of {f.y.shape}"
+        raise InputError(text, "curve", value=f.y.shape)
     x, y, h = f.x, f.y, np.diff(f.x)
     start, end = y[:-1], y[1:]
     m0, m1 = h * f.slopes[:-1], h * f.slopes[1:]

@@ -2,10 +2,50 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from shapespline._core import ShapeReport, SpaceCurve
+
+
+class InputError(ValueError):
+    """An argument that cannot be used; the text says which, where, what it must be and what it is.
+
+    Attributes
+    ----------
+    argument : str
+        Name of the argument.
+    index : int, tuple of int, or None
+        Where in the argument; of a collection, the index of the curve or row comes first.
+    value : object
+        The value there: a number, a name, a shape, or what was measured of it.
+
+    Examples
+    --------
+    >>> import shapespline as ss
+    >>> try:
+    ...     ss.NuSpline([[0, 0], [1, 1], [2, float("nan")]])
+    ... except ss.InputError as error:
+    ...     print(error.argument, error.index, error.value)
+    points 2 nan
+    """
+
+    argument: str
+    index: int | tuple[int, ...] | None
+    value: Any
+
+    def __init__(
+        self,
+        message: str,
+        argument: str = "",
+        index: int | tuple[int, ...] | None = None,
+        value: Any = None,
+    ) -> None:
+        # Pickling makes the exception again from the message, and then sets the attributes.
+        super().__init__(message)
+        self.argument = argument
+        self.index = index
+        self.value = value
 
 
 class ConvergenceError(RuntimeError):

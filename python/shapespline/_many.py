@@ -7,6 +7,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Literal, overload
 
 from shapespline._core import _fit_many
+from shapespline._errors import InputError
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -55,9 +56,9 @@ class Fits(Sequence["SpaceCurve | None"]):
     Attributes
     ----------
     errors : Mapping[int, Exception]
-        The exception of each curve that failed, by its index: a ``ValueError`` for unusable points,
-        a `ConvergenceError`, which carries the last curve and its report, where the limit of
-        iterations was reached.
+        The exception of each curve that failed, by its index: an `InputError` for unusable points,
+        whose ``index`` begins with that of the curve; a `ConvergenceError`, which carries the last
+        curve and its report, where the limit of iterations was reached.
     ok : bool
         Whether no curve failed.
 
@@ -203,7 +204,8 @@ def fit_many(
     (True, 100, True)
     """
     if errors not in ("return", "raise"):
-        raise ValueError(f"errors must be one of 'return', 'raise'; got {errors!r}")
+        text = f"errors must be one of 'return', 'raise'; got {errors!r}"
+        raise InputError(text, "errors", value=errors)
     known = (_PRESERVING if shape_preserving else _GIVEN).get(str(method), _ALL)
     given = {
         "criteria": criteria,

@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from shapespline._errors import InputError
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
@@ -111,27 +113,35 @@ def _values(x: Floats, y: Floats, curve: PiecewiseBezier) -> tuple[Floats, Float
     """Return breaks, those of the data among them, and the values' coefficients between them."""
     control, breaks = curve.control, curve.breaks
     if control.shape[2] != 2 or curve.weights is not None:
-        raise ValueError("monotonicity is for the graph of a function: polynomials in the plane")
+        text = "monotonicity is for the graph of a function: polynomials in the plane"
+        raise InputError(text, "curve")
     extent = np.ptp(x)
     t = np.linspace(0, 1, control.shape[1])
     graph = breaks[:-1, None] * (1 - t) + breaks[1:, None] * t
     apart = np.abs(control[:, :, 0] - graph)
     if apart.max() > 1e-9 * extent:
-        raise ValueError(
+        i = int(apart.max(axis=1).argmax())
+        raise InputError(
             "monotonicity is for the graph of a function, whose parameter is x; the parameter of "
-            f"piece {int(apart.max(axis=1).argmax())} is not"
+            f"piece {i} is not",
+            "curve",
+            i,
         )
     if abs(breaks[0] - x[0]) > 1e-9 * extent or abs(breaks[-1] - x[-1]) > 1e-9 * extent:
-        raise ValueError(
+        raise InputError(
             f"the function runs from {breaks[0]:g} to {breaks[-1]:g}, the points from {x[0]:g} to "
-            f"{x[-1]:g}"
+            f"{x[-1]:g}",
+            "curve",
         )
     distance = np.abs(curve(np.clip(x, breaks[0], breaks[-1]))[:, 1] - y)
     if distance.max() > 1e-9 * (np.ptp(y) or 1.0):
         i = int(distance.argmax())
-        raise ValueError(
+        raise InputError(
             f"the curve does not pass through points[{i}]: at x = {x[i]:g} it is {distance[i]:.3g} "
-            "away"
+            "away",
+            "points",
+            i,
+            float(distance[i]),
         )
     cuts = np.unique(np.concatenate([x, breaks[1:-1]]))
     cuts = cuts[(cuts >= x[0]) & (cuts <= x[-1])]
@@ -165,9 +175,12 @@ def check_monotone(
     """
     x, y = points.T
     for i in np.flatnonzero(np.diff(x) <= 0)[:1]:
-        raise ValueError(
+        raise InputError(
             f"points[{i + 1}] has x = {x[i + 1]:g}, which does not exceed its predecessor's "
-            f"{x[i]:g}; x must be strictly increasing"
+            f"{x[i]:g}; x must be strictly increasing",
+            "points",
+            int(i) + 1,
+            float(x[i + 1]),
         )
     cuts, values = _values(x, y, curve)
     segment = np.clip(np.searchsorted(x, (cuts[:-1] + cuts[1:]) / 2) - 1, 0, len(x) - 2)

@@ -9,6 +9,7 @@ import numpy as np
 from shapespline import _core
 from shapespline._convert import _is_array, piecewise
 from shapespline._core import SpaceCurve, TensionSpline
+from shapespline._errors import InputError
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -149,38 +150,49 @@ def _at_its_points(curve: TensionSpline, parameters: Any) -> None:
     if parameters is None:
         return
     if isinstance(parameters, str) or np.ndim(parameters) != 1:
-        raise ValueError("parameters must be an array of a TensionSpline's own, or left out")
+        text = "parameters must be an array of a TensionSpline's own, or left out"
+        raise InputError(text, "parameters", value=parameters)
     strange = np.flatnonzero(~np.isin(parameters, curve.parameters))
     if strange.size:
         i = int(strange[0])
-        raise ValueError(
-            f"parameters[{i}] = {np.asarray(parameters)[i]} is not one of the parameters at which "
-            "the TensionSpline has a point: it can be judged at these only"
+        value = np.asarray(parameters)[i]
+        raise InputError(
+            f"parameters[{i}] = {value} is not one of the parameters at which the TensionSpline "
+            "has a point: it can be judged at these only",
+            "parameters",
+            i,
+            value,
         )
 
 
 def _breaks(points: ArrayLike, control: Any, parameters: Any) -> Floats:
     """Return the breaks of Bézier control points: the parameters of the points."""
     if parameters is None:
-        raise ValueError(
+        raise InputError(
             "parameters must be given where curve is an array of Bézier control points, one for "
-            "each point"
+            "each point",
+            "parameters",
         )
     shape = np.shape(control)
     if len(shape) != 3:
-        raise ValueError(f"curve must have shape (segments, degree + 1, dim), got shape {shape}")
+        text = f"curve must have shape (segments, degree + 1, dim), got shape {shape}"
+        raise InputError(text, "curve", value=shape)
     # By name, or checked as for a curve through the points.
     u: Floats = _core._polygon_shape(points, parameters, "zero-curvature", 0.0)["parameters"]
     if len(u) != shape[0] + 1:
-        raise ValueError(
+        raise InputError(
             f"curve must hold one piece between two points: {len(u) - 1} for {len(u)} points, got "
-            f"{shape[0]}"
+            f"{shape[0]}",
+            "curve",
+            value=shape[0],
         )
     dim = np.shape(points)[1]
     if shape[2] == dim + 1:
-        raise ValueError(
+        raise InputError(
             f"points have {dim} coordinates, curve has {shape[2]}; for control points with weights "
-            "use shapespline.PiecewiseBezier(control, breaks, weights=weights)"
+            "use shapespline.PiecewiseBezier(control, breaks, weights=weights)",
+            "curve",
+            value=shape[2],
         )
     return u
 
@@ -278,9 +290,11 @@ def inflection_count(curve: Any, direction: ArrayLike | None = None) -> Inflecti
         if axes == 2:
             return InflectionCount(*_core._polygon_inflections(curve, direction))
         if axes != 3:
-            raise ValueError(
+            raise InputError(
                 "curve must be points of shape (n, 2) or (n, 3), or Bézier control points of shape "
-                f"(pieces, degree + 1, dim); got shape {np.shape(curve)}"
+                f"(pieces, degree + 1, dim); got shape {np.shape(curve)}",
+                "curve",
+                value=np.shape(curve),
             )
         curve = _core.PiecewiseBezier(curve, np.arange(len(curve) + 1.0))
     return InflectionCount(*_core._curve_inflections(piecewise(curve), direction))

@@ -7,7 +7,7 @@ use numpy::{
     PyUntypedArrayMethods,
 };
 use pyo3::{
-    exceptions::{PyOverflowError, PyTypeError, PyValueError},
+    exceptions::{PyOverflowError, PyTypeError},
     intern,
     prelude::*,
     types::{IntoPyDict, PyFloat, PyInt, PyString},
@@ -15,7 +15,10 @@ use pyo3::{
 use rayon::prelude::*;
 use shapespline::geometry::{DVec3, Dimension};
 
-use crate::work::detached;
+use crate::{
+    error::{Value, invalid, must, tuple},
+    work::detached,
+};
 
 /// An array of f64 in C order: the caller's own where it is that already, else a copy.
 pub(crate) struct Array<'py>(PyReadonlyArrayDyn<'py, f64>);
@@ -32,13 +35,7 @@ impl<'py> Array<'py> {
 
     /// The shape as Python writes it.
     pub(crate) fn shape_text(&self) -> String {
-        match self.shape() {
-            [n] => format!("({n},)"),
-            shape => {
-                let parts: Vec<String> = shape.iter().map(usize::to_string).collect();
-                format!("({})", parts.join(", "))
-            }
-        }
+        tuple(self.shape())
     }
 }
 
@@ -57,7 +54,7 @@ pub(crate) fn array<'py>(argument: &str, object: &Bound<'py, PyAny>) -> PyResult
     let any = numpy.getattr(intern!(py, "asarray"))?.call1((object,)).map_err(|error| {
         // Rows of different lengths, for example.
         let text = format!("{argument} must be an array of numbers: {}", error.value(py));
-        PyValueError::new_err(text)
+        invalid(argument, &[], Value::Nothing, text)
     })?;
     let dtype = any.cast::<PyUntypedArray>()?.dtype();
     if !matches!(dtype.kind(), b'b' | b'i' | b'u' | b'f') {
@@ -70,8 +67,9 @@ pub(crate) fn array<'py>(argument: &str, object: &Bound<'py, PyAny>) -> PyResult
     }
     let options = [("dtype", "float64"), ("order", "C")].into_py_dict(py)?;
     let copy = numpy.getattr(intern!(py, "array"))?.call((any,), Some(&options))?;
-    in_c_order(copy.cast::<PyArrayDyn<f64>>()?)
-        .ok_or_else(|| PyValueError::new_err(format!("{argument} cannot be read: it is in use")))
+    in_c_order(copy.cast::<PyArrayDyn<f64>>()?).ok_or_else(|| {
+        invalid(argument, &[], Value::Nothing, format!("{argument} cannot be read: it is in use"))
+    })
 }
 
 fn in_c_order<'py>(array: &Bound<'py, PyArrayDyn<f64>>) -> Option<Array<'py>> {
@@ -89,14 +87,13 @@ fn in_c_order<'py>(array: &Bound<'py, PyArrayDyn<f64>>) -> Option<Array<'py>> {
 pub(crate) fn finite(argument: &str, array: &Array<'_>) -> PyResult<()> {
     let Some(mut flat) = array.values().iter().position(|x| !x.is_finite()) else { return Ok(()) };
     let value = array.values()[flat];
-    let mut index: Vec<String> = Vec::new();
+    let mut index: Vec<usize> = Vec::new();
     for &length in array.shape().iter().rev() {
-        index.push((flat % length).to_string());
+        index.push(flat % length);
         flat /= length;
     }
     index.reverse();
-    let index = index.join(", ");
-    Err(PyValueError::new_err(format!("{argument}[{index}] must be finite, got {value}")))
+    Err(must(argument, &index, "be finite", value))
 }
 
 /// The points of rows of coordinates, on all threads where there are many: of a large copy the first touch
@@ -145,11 +142,8 @@ impl<'py> FromPyObject<'_, 'py> for PointArray<'py> {
         let dimension = match *array.shape() {
             [_, 3] => Dimension::Three,
             [_, 2] => Dimension::Two,
-            _ => {
-                return Err(PyValueError::new_err(format!(
-                    "points must have shape (n, 2) or (n, 3), got shape {}",
-                    array.shape_text()
-                )));
+            ref shape => {
+                return Err(must("points", &[], "have shape (n, 2) or (n, 3)", shape));
             }
         };
         Ok(Self { array, dimension })
@@ -180,16 +174,14 @@ impl<'py> FromPyObject<'_, 'py> for Offsets {
     fn extract(object: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
         let array = array("offsets", &object)?;
         let [_] = array.shape() else {
-            let text = format!("offsets must have one axis, got shape {}", array.shape_text());
-            return Err(PyValueError::new_err(text));
+            return Err(must("offsets", &[], "have one axis", array.shape()));
         };
         // f64 holds every index of an array that fits into memory.
         let index = |(i, &x): (usize, &f64)| {
             if x >= 0.0 && x.fract() == 0.0 && x < 9e15 {
                 return Ok(x as usize);
             }
-            let text = format!("offsets[{i}] must be an integer from 0, got {x}");
-            Err(PyValueError::new_err(text))
+            Err(must("offsets", &[i], "be an integer from 0", x))
         };
         array.values().iter().enumerate().map(index).collect::<PyResult<_>>().map(Self)
     }
@@ -210,10 +202,7 @@ pub(crate) fn numbers(argument: &str, object: &Bound<'_, PyAny>) -> PyResult<Num
     match array.shape() {
         [] => Ok(Numbers::One(array.values()[0])),
         [_] => Ok(Numbers::Many(array.values().to_vec())),
-        _ => Err(PyValueError::new_err(format!(
-            "{argument} must be a number or have one axis, got shape {}",
-            array.shape_text()
-        ))),
+        shape => Err(must(argument, &[], "be a number or have one axis", shape)),
     }
 }
 
@@ -251,7 +240,8 @@ impl<'py> Query<'py> {
 pub(crate) fn float(argument: &str, object: &Bound<'_, PyAny>) -> PyResult<f64> {
     object.extract::<f64>().map_err(|error| {
         if error.is_instance_of::<PyOverflowError>(object.py()) {
-            PyValueError::new_err(format!("{argument} is too large for a float"))
+            let text = format!("{argument} is too large for a float");
+            invalid(argument, &[], Value::Nothing, text)
         } else {
             PyTypeError::new_err(format!("{argument} must be a number, got {}", kind(object)))
         }
@@ -261,12 +251,16 @@ pub(crate) fn float(argument: &str, object: &Bound<'_, PyAny>) -> PyResult<f64> 
 /// An integer of at least `least`.
 pub(crate) fn count(argument: &str, least: usize, object: &Bound<'_, PyAny>) -> PyResult<usize> {
     match object.extract::<i64>() {
-        Ok(value) => usize::try_from(value).ok().filter(|&n| n >= least).ok_or_else(|| {
-            PyValueError::new_err(format!("{argument} must be at least {least}, got {value}"))
-        }),
+        Ok(value) => usize::try_from(value)
+            .ok()
+            .filter(|&n| n >= least)
+            .ok_or_else(|| must(argument, &[], format_args!("be at least {least}"), value)),
         Err(error) if error.is_instance_of::<PyOverflowError>(object.py()) => {
-            let text = format!("{argument} must be an integer that 64 bits hold, got {object}");
-            Err(PyValueError::new_err(text))
+            // Python refuses to write integers of more than 4,300 digits.
+            let digits = object.str().map_or_else(|_| String::new(), |text| text.to_string());
+            let given = if matches!(digits.len(), 1..=40) { &digits } else { "a longer one" };
+            let text = format!("{argument} must be an integer that 64 bits hold, got {given}");
+            Err(invalid(argument, &[], given, text))
         }
         Err(_) => {
             let text = format!("{argument} must be an integer, got {}", kind(object));

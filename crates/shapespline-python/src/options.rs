@@ -1,9 +1,6 @@
 //! Options that users write by name.
 
-use pyo3::{
-    exceptions::{PyTypeError, PyValueError},
-    prelude::*,
-};
+use pyo3::{exceptions::PyTypeError, prelude::*};
 use shapespline::{
     catmull_rom::Continuity,
     criteria::{Criteria, Criterion, Tolerances},
@@ -13,12 +10,12 @@ use shapespline::{
 };
 
 use crate::{
-    error::input_error,
+    error::{input_error, invalid, must},
     input::{Numbers, count, float, kind, numbers, text},
     tangents::Tangents,
 };
 
-/// The entry of a name, or a `ValueError` that lists the names.
+/// The entry of a name, or an error that lists the names.
 pub(crate) fn choose<T: Copy>(argument: &str, name: &str, options: &[(&str, T)]) -> PyResult<T> {
     options.iter().find(|(known, _)| *known == name).map(|(_, value)| *value).ok_or_else(|| {
         let names: Vec<String> = options.iter().map(|(known, _)| format!("'{known}'")).collect();
@@ -26,8 +23,9 @@ pub(crate) fn choose<T: Copy>(argument: &str, name: &str, options: &[(&str, T)])
     })
 }
 
-fn unknown(argument: &str, name: &str, options: &str) -> PyErr {
-    PyValueError::new_err(format!("{argument} must be one of {options}; got '{name}'"))
+pub(crate) fn unknown(argument: &str, name: &str, options: &str) -> PyErr {
+    let text = format!("{argument} must be one of {options}; got '{name}'");
+    invalid(argument, &[], name, text)
 }
 
 /// The name in a string argument.
@@ -152,7 +150,7 @@ fn end(argument: &str, object: &Bound<'_, PyAny>) -> PyResult<Option<f64>> {
     if value.is_finite() {
         return Ok(Some(value));
     }
-    Err(PyValueError::new_err(format!("{argument} must be finite, got {value}")))
+    Err(must(argument, &[], "be finite", value))
 }
 
 /// `parameters`: a name, an exponent, or the parameters themselves.
@@ -223,11 +221,15 @@ impl Ends {
         match self {
             Self::Named(boundary) => Ok(boundary),
             Self::Tangents(tangents) if tangents.dimension == dimension => Ok(tangents.boundary()),
-            Self::Tangents(tangents) => Err(PyValueError::new_err(format!(
-                "boundary: the tangents start and end have {} components, the points have {}",
-                tangents.dimension.len(),
-                dimension.len()
-            ))),
+            Self::Tangents(tangents) => {
+                let components = tangents.dimension.len();
+                let text = format!(
+                    "boundary: the tangents start and end have {components} components, the points \
+                     have {}",
+                    dimension.len()
+                );
+                Err(invalid("boundary", &[], components, text))
+            }
         }
     }
 }

@@ -4,14 +4,13 @@ use std::sync::Arc;
 
 use numpy::PyArray1;
 use pyo3::{
-    exceptions::PyValueError,
     prelude::*,
     types::{PyBytes, PyType},
 };
 use shapespline::geometry::{self, DVec3, Dimension};
 
 use crate::{
-    error::input_error,
+    error::{input_error, must, tuple},
     input::{Array, Query, array, finite},
     options,
     output::{FloatArray, shaped, vector, zeros},
@@ -80,10 +79,10 @@ fn dimension(argument: &str, given: &Array<'_>, columns: usize) -> PyResult<Dime
     match columns {
         2 => Ok(Dimension::Two),
         3 => Ok(Dimension::Three),
-        _ => Err(PyValueError::new_err(format!(
-            "{argument} must hold points of 2 or 3 coordinates along its last axis, got shape {}",
-            given.shape_text()
-        ))),
+        _ => {
+            let rule = "hold points of 2 or 3 coordinates along its last axis";
+            Err(must(argument, &[], rule, given.shape()))
+        }
     }
 }
 
@@ -96,11 +95,8 @@ fn with_axes<'py>(
     let array = array(argument, object)?;
     if array.shape().len() != axes.len() {
         let end = if axes.len() == 1 { "," } else { "" };
-        return Err(PyValueError::new_err(format!(
-            "{argument} must have shape ({}{end}), got shape {}",
-            axes.join(", "),
-            array.shape_text()
-        )));
+        let rule = format!("have shape ({}{end})", axes.join(", "));
+        return Err(must(argument, &[], rule, array.shape()));
     }
     finite(argument, &array)?;
     Ok(array)
@@ -110,13 +106,8 @@ fn weights_of(object: Option<&Bound<'_, PyAny>>, shape: &[usize]) -> PyResult<Op
     let Some(object) = object.filter(|o| !o.is_none()) else { return Ok(None) };
     let weights = array("weights", object)?;
     if weights.shape() != shape {
-        let expected: Vec<String> = shape.iter().map(usize::to_string).collect();
-        let end = if shape.len() == 1 { "," } else { "" };
-        return Err(PyValueError::new_err(format!(
-            "weights must have shape ({}{end}), one for each control point, got shape {}",
-            expected.join(", "),
-            weights.shape_text()
-        )));
+        let rule = format!("have shape {}, one for each control point", tuple(shape));
+        return Err(must("weights", &[], rule, weights.shape()));
     }
     Ok(Some(weights.values().to_vec()))
 }
@@ -145,11 +136,8 @@ impl PiecewiseBezier {
         let [pieces, order, columns] = [0, 1, 2].map(|axis| control.shape()[axis]);
         let dimension = dimension("control", &control, columns)?;
         if breaks.len() != pieces + 1 {
-            return Err(PyValueError::new_err(format!(
-                "breaks must have length {} (one more than control has pieces), got {}",
-                pieces + 1,
-                breaks.len()
-            )));
+            let rule = format!("have length {} (one more than control has pieces)", pieces + 1);
+            return Err(must("breaks", &[], rule, breaks.len()));
         }
         let points = rows(control.values(), columns);
         let degree = order.saturating_sub(1);
@@ -250,11 +238,9 @@ impl PiecewiseBezier {
         let [order, pieces, columns] = [0, 1, 2].map(|axis| coefficients.shape()[axis]);
         let dimension = dimension("coefficients", &coefficients, columns)?;
         if breaks.len() != pieces + 1 {
-            return Err(PyValueError::new_err(format!(
-                "breaks must have length {} (one more than coefficients has pieces), got {}",
-                pieces + 1,
-                breaks.len()
-            )));
+            let rule =
+                format!("have length {} (one more than coefficients has pieces)", pieces + 1);
+            return Err(must("breaks", &[], rule, breaks.len()));
         }
         let degree = order.saturating_sub(1);
         let values = coefficients.values();

@@ -3,12 +3,7 @@
 use std::sync::Arc;
 
 use numpy::PyArray1;
-use pyo3::{
-    IntoPyObjectExt,
-    exceptions::{PyRuntimeError, PyValueError},
-    prelude::*,
-    types::PyDict,
-};
+use pyo3::{IntoPyObjectExt, exceptions::PyRuntimeError, prelude::*, types::PyDict};
 use shapespline::{
     criteria::{
         CurveError, INTERPOLATION, InflectionCount, Tolerances, curve_inflections_from,
@@ -18,7 +13,7 @@ use shapespline::{
 };
 
 use crate::{
-    error::input_error,
+    error::{Value, input_error, invalid, must, subject_error},
     input::{Numbers, Points, numbers},
     options::{self, CriteriaNames, Ends, Parameters, tolerances},
     output::{vector, vectors},
@@ -49,7 +44,7 @@ pub(crate) fn _check_shape(
     let Points { points, dimension } = points;
     if dimension != curve.dimension() {
         let [points, curve] = [dimension, curve.dimension()].map(Dimension::len);
-        return Err(PyValueError::new_err(CurveError::Dimension { points, curve }.to_string()));
+        return Err(subject_error(CurveError::Dimension { points, curve }));
     }
     let parametrization = match parameters {
         Some(given) => given.0,
@@ -57,11 +52,12 @@ pub(crate) fn _check_shape(
             Parametrization::Given(curve.breaks().to_vec())
         }
         None => {
-            return Err(PyValueError::new_err(format!(
+            let text = format!(
                 "parameters must be given: the curve has {} breaks, but there are {} points",
                 curve.breaks().len(),
                 points.len()
-            )));
+            );
+            return Err(invalid("parameters", &[], Value::Nothing, text));
         }
     };
     let boundary = boundary.map(|ends| ends.of(dimension)).transpose()?;
@@ -119,20 +115,17 @@ fn view(object: &Bound<'_, PyAny>) -> PyResult<Option<DVec3>> {
     let given = match numbers("direction", object)? {
         Numbers::Many(v) if v.len() == 3 => DVec3::from_slice(&v),
         Numbers::Many(v) => {
-            let text = format!("direction must have 3 components, got {}", v.len());
-            return Err(PyValueError::new_err(text));
+            return Err(must("direction", &[], "have 3 components", v.len()));
         }
         Numbers::One(value) => {
-            let text = format!("direction must be a vector of 3 components, got {value}");
-            return Err(PyValueError::new_err(text));
+            return Err(must("direction", &[], "be a vector of 3 components", value));
         }
     };
     if let Some(i) = given.to_array().iter().position(|x| !x.is_finite()) {
-        let text = format!("direction[{i}] must be finite, got {}", given.to_array()[i]);
-        return Err(PyValueError::new_err(text));
+        return Err(must("direction", &[i], "be finite", given.to_array()[i]));
     }
     if given == DVec3::ZERO {
-        return Err(PyValueError::new_err("direction must not be the zero vector"));
+        return Err(invalid("direction", &[], given, "direction must not be the zero vector"));
     }
     Ok(Some(given))
 }

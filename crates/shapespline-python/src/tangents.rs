@@ -3,10 +3,11 @@
 use std::hash::{Hash, Hasher};
 
 use numpy::IntoPyArray;
-use pyo3::{exceptions::PyValueError, prelude::*};
+use pyo3::prelude::*;
 use shapespline::geometry::{Boundary, DVec3, Dimension};
 
 use crate::{
+    error::{invalid, must},
     input::{Numbers, numbers},
     output::{FloatArray, vector},
 };
@@ -75,20 +76,18 @@ fn tangent(argument: &str, object: &Bound<'_, PyAny>) -> PyResult<(DVec3, Dimens
         Numbers::Many(v) if v.len() == 3 => (DVec3::from_slice(&v), Dimension::Three),
         Numbers::Many(v) if v.len() == 2 => (DVec3::new(v[0], v[1], 0.0), Dimension::Two),
         Numbers::Many(v) => {
-            let text = format!("{argument} must have 2 or 3 components, got {}", v.len());
-            return Err(PyValueError::new_err(text));
+            return Err(must(argument, &[], "have 2 or 3 components", v.len()));
         }
         Numbers::One(value) => {
-            let text = format!("{argument} must be a vector of 2 or 3 components, got {value}");
-            return Err(PyValueError::new_err(text));
+            return Err(must(argument, &[], "be a vector of 2 or 3 components", value));
         }
     };
     if let Some(i) = vector.to_array().iter().position(|x| !x.is_finite()) {
-        let text = format!("{argument}[{i}] must be finite, got {}", vector.to_array()[i]);
-        return Err(PyValueError::new_err(text));
+        return Err(must(argument, &[i], "be finite", vector.to_array()[i]));
     }
     if vector == DVec3::ZERO {
-        return Err(PyValueError::new_err(format!("{argument} must not be the zero vector")));
+        let text = format!("{argument} must not be the zero vector");
+        return Err(invalid(argument, &[], vector, text));
     }
     Ok((vector, dimension))
 }
@@ -100,11 +99,11 @@ impl Tangents {
         let (start, dimension) = tangent("start", start)?;
         let (end, other) = tangent("end", end)?;
         if dimension != other {
-            return Err(PyValueError::new_err(format!(
-                "start and end must have the same number of components, got {} and {}",
-                dimension.len(),
-                other.len()
-            )));
+            let [start, end] = [dimension, other].map(Dimension::len);
+            let text = format!(
+                "start and end must have the same number of components, got {start} and {end}"
+            );
+            return Err(invalid("end", &[], end, text));
         }
         Ok(Self { start, end, dimension })
     }

@@ -3,7 +3,6 @@
 use numpy::PyArray1;
 use pyo3::{
     PyClassInitializer,
-    exceptions::PyValueError,
     prelude::*,
     types::{PyList, PyTuple, PyType},
 };
@@ -14,6 +13,7 @@ use shapespline::{
 
 use crate::{
     curve::SpaceCurve,
+    error::must,
     fit::{Data, Failure, Searching, build, preserve},
     input::{Numbers, Points, Query, array, numbers},
     options::{self, CriteriaNames, Ends, Method, Parameters},
@@ -51,11 +51,11 @@ impl<'py> FromPyObject<'_, 'py> for Scale {
                 let (starts, ends) = any.values().split_at(*n);
                 Ok(Self::Segments([starts, ends].map(|values| Numbers::Many(values.to_vec()))))
             }
-            _ => Err(PyValueError::new_err(format!(
-                "tangent_scale must be a number, one for each point, or a pair of arrays with one \
-                 for each segment, got shape {}",
-                any.shape_text()
-            ))),
+            shape => {
+                let rule = "be a number, one for each point, or a pair of arrays with one for each \
+                            segment";
+                Err(must("tangent_scale", &[], rule, shape))
+            }
         }
     }
 }

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from shapespline._errors import InputError
 from shapespline.plot._style import CURVE, DATA, OPEN, axes_for
 
 if TYPE_CHECKING:
@@ -305,7 +306,8 @@ def torsion(
     >>> ax = ss.plot.torsion(ss.NuSpline([[0, 0, 0], [1, 0, 0], [1, 1, 0], [1, 1, 1]]))
     """
     if c.points.shape[1] == 2:
-        raise ValueError("torsion is for curves in space, but the points of c have shape (n, 2)")
+        text = "torsion is for curves in space, but the points of c have shape (n, 2)"
+        raise InputError(text, "c")
     ax = axes_for(ax)
     u = _inside(c, samples)
     tau = c.torsion(u)

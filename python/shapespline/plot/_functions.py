@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from shapespline._errors import InputError
 from shapespline.plot._style import CURVE, DATA, axes_for
 
 if TYPE_CHECKING:
@@ -44,9 +45,10 @@ def _panels(ax: Axes, orders: range) -> list[Axes]:
         return [found[name] for name in names]
     place = ax.get_subplotspec()
     if place is None:
-        raise ValueError(
+        raise InputError(
             "ax must be part of a grid of subplots to make room for derivatives; "
-            "pass derivatives=0, and draw each into its own Axes with nu"
+            "pass derivatives=0, and draw each into its own Axes with nu",
+            "ax",
         )
     grid = place.subgridspec(1 + len(orders), 1, height_ratios=[1.8, *(1 for _ in orders)])
     ax.set_subplotspec(grid[0])
@@ -117,7 +119,7 @@ def interpolant(
     """
     for name, value in (("nu", nu), ("derivatives", derivatives)):
         if value < 0:
-            raise ValueError(f"{name} must not be negative, got {value}")
+            raise InputError(f"{name} must not be negative, got {value}", name, value=value)
     ax = axes_for(ax)
     orders = range(nu + 1, nu + 1 + derivatives)
     panels = _panels(ax, orders) if derivatives else []

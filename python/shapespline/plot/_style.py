@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from shapespline._errors import InputError
+
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
@@ -36,9 +38,8 @@ def axes_for(ax: Axes | None, *, space: bool = False) -> Axes:
     """Return the Axes to draw into: those given, or new ones, in perspective for ``space``."""
     if ax is not None:
         if space and ax.name != "3d":
-            raise ValueError(
-                f"ax must have projection='3d' for a curve in space, got projection={ax.name!r}"
-            )
+            text = f"ax must have projection='3d' for a curve in space, got projection={ax.name!r}"
+            raise InputError(text, "ax", value=ax.name)
         return ax
     import matplotlib.pyplot as plt
 

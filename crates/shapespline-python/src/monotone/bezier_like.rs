@@ -1,10 +1,11 @@
 //! The paper's curves themselves.
 
-use pyo3::{exceptions::PyValueError, prelude::*};
+use pyo3::prelude::*;
 use shapespline::monotone::BezierLike;
 
-use super::options::{self, monotone_error};
+use super::options;
 use crate::{
+    error::{invalid, monotone_error, must},
     input::{Query, array, count},
     output::{FloatArray, shaped},
 };
@@ -19,7 +20,7 @@ fn known(name: &str, value: Option<f64>, default: f64) -> PyResult<f64> {
     if value.is_finite() {
         return Ok(value);
     }
-    Err(PyValueError::new_err(format!("{name} must be finite, got {value}")))
+    Err(must(name, &[], "be finite", value))
 }
 
 /// Evaluate a cubic, quartic or quintic Bézier-like curve, or a derivative of it.
@@ -87,9 +88,9 @@ pub(crate) fn bezier_like<'py>(
     let (a, b) = (known("a", Some(a), 3.0)?, known("b", Some(b), 3.0)?);
     let curve = match degree {
         3 if alpha.or(beta).is_some() => {
-            return Err(PyValueError::new_err(
-                "alpha and beta are for degree 4 and 5, got degree 3",
-            ));
+            let given = if alpha.is_some() { "alpha" } else { "beta" };
+            let text = "alpha and beta are for degree 4 and 5, got degree 3";
+            return Err(invalid(given, &[], alpha.or(beta).unwrap_or_default(), text));
         }
         3 => BezierLike::Cubic { a, b },
         4 | 5 => {
@@ -101,19 +102,14 @@ pub(crate) fn bezier_like<'py>(
             }
         }
         _ => {
-            return Err(PyValueError::new_err(format!("degree must be 3, 4 or 5, got {degree}")));
+            return Err(must("degree", &[], "be 3, 4 or 5", degree));
         }
     };
     let control = array("control", control)?;
     let columns: &[usize] = match control.shape() {
         [4] => &[],
         [4, dim] if *dim > 0 => &control.shape()[1..],
-        _ => {
-            return Err(PyValueError::new_err(format!(
-                "control must have shape (4, dim) or (4,), got shape {}",
-                control.shape_text()
-            )));
-        }
+        shape => return Err(must("control", &[], "have shape (4, dim) or (4,)", shape)),
     };
     let evaluate = |t: &[f64]| {
         curve.evaluate(control.values(), t, nu.min(6)).map_err(|error| monotone_error(&error))

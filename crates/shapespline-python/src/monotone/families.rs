@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use pyo3::{PyClass, PyClassInitializer, exceptions::PyValueError, prelude::*};
+use pyo3::{PyClass, PyClassInitializer, prelude::*};
 use shapespline::monotone::{
     Extrapolation, Fairness, MonotoneError, QuarticOptions, QuinticOptions, Shape, Slopes,
 };
@@ -15,6 +15,7 @@ use super::{
     spline::MonotoneSpline,
 };
 use crate::{
+    error::{invalid, must},
     input::{Array, array},
     work::GoOn,
 };
@@ -30,16 +31,15 @@ impl<'py> Data<'py> {
     fn of(x: &Bound<'py, PyAny>, y: &Bound<'py, PyAny>, axis: isize) -> PyResult<Self> {
         let (x, y) = (array("x", x)?, array("y", y)?);
         let &[n] = x.shape() else {
-            let text = format!("x must have one axis, got shape {}", x.shape_text());
-            return Err(PyValueError::new_err(text));
+            return Err(must("x", &[], "have one axis", x.shape()));
         };
         let layout = Layout::of(&y, axis)?;
         let found = y.shape()[layout.axis()];
         if found != n {
-            return Err(PyValueError::new_err(format!(
-                "y has {found} entries along axis {}, x has {n}; they must agree",
-                layout.axis()
-            )));
+            let axis = layout.axis();
+            let text =
+                format!("y has {found} entries along axis {axis}, x has {n}; they must agree");
+            return Err(invalid("y", &[], y.shape(), text));
         }
         Ok(Self { x, y, layout })
     }
@@ -57,10 +57,8 @@ impl<'py> Data<'py> {
     fn slopes(&self, option: &SlopesOption) -> PyResult<Option<Vec<f64>>> {
         let SlopesOption::Given { values, shape } = option else { return Ok(None) };
         if shape != self.y.shape() {
-            return Err(PyValueError::new_err(format!(
-                "slopes must have the shape of y, {}, got {shape:?}",
-                self.y.shape_text()
-            )));
+            let rule = format!("have the shape of y, {}", self.y.shape_text());
+            return Err(must("slopes", &[], rule, &shape[..]));
         }
         Ok(Some(self.layout.split(values, self.x.values().len())))
     }
@@ -160,10 +158,9 @@ impl MonotoneQuartic {
         #[pyo3(from_py_with = options::extrapolate)] extrapolate: Option<Extrapolation>,
     ) -> PyResult<PyClassInitializer<Self>> {
         if matches!(slopes, SlopesOption::Optimal) {
-            return Err(PyValueError::new_err(
-                "slopes must be 'fritsch-butland' or an array of slopes; got 'optimal', which is for \
-                 MonotoneQuintic",
-            ));
+            let text = "slopes must be 'fritsch-butland' or an array of slopes; got 'optimal', \
+                        which is for MonotoneQuintic";
+            return Err(invalid("slopes", &[], "optimal", text));
         }
         let data = Data::of(x, y, axis)?;
         let extrapolate = extrapolate.unwrap_or_default();

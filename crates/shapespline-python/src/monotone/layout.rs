@@ -1,9 +1,12 @@
 //! Arrays with an axis of interpolation, as columns and back.
 
-use pyo3::{exceptions::PyValueError, prelude::*};
+use pyo3::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::input::Array;
+use crate::{
+    error::{Value, invalid, must},
+    input::Array,
+};
 
 /// The shape of y but for its axis of interpolation.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -23,21 +26,18 @@ impl Layout {
         let shape = y.shape();
         let axes = shape.len().cast_signed();
         if axes == 0 {
-            return Err(PyValueError::new_err("y must have at least one axis, got one number"));
+            let text = "y must have at least one axis, got one number";
+            return Err(invalid("y", &[], Value::Nothing, text));
         }
         if !(-axes..axes).contains(&axis) {
-            return Err(PyValueError::new_err(format!(
-                "axis must be from {} to {} for y of shape {}, got {axis}",
-                -axes,
-                axes - 1,
-                y.shape_text(),
-            )));
+            let rule =
+                format!("be from {} to {} for y of shape {}", -axes, axes - 1, y.shape_text());
+            return Err(must("axis", &[], rule, axis as i64));
         }
         let axis = axis.rem_euclid(axes).cast_unsigned();
         let layout = Self { outer: shape[..axis].to_vec(), inner: shape[axis + 1..].to_vec() };
         if layout.columns() == 0 {
-            let text = format!("y must have at least one column, got shape {}", y.shape_text());
-            return Err(PyValueError::new_err(text));
+            return Err(must("y", &[], "have at least one column", y.shape()));
         }
         Ok(layout)
     }
@@ -61,17 +61,23 @@ impl Layout {
         [&self.outer, middle, &self.inner].concat()
     }
 
-    /// Where column k is, as an index of the axes that remain.
-    pub(crate) fn index(&self, k: usize, at: Option<usize>) -> String {
-        let sizes = self.outer.iter().chain(&self.inner);
+    /// The index of entry i of column k.
+    pub(crate) fn index(&self, k: usize, i: usize) -> Vec<usize> {
         let mut rest = k;
-        let mut parts: Vec<String> = Vec::new();
-        for &size in sizes.collect::<Vec<_>>().into_iter().rev() {
-            parts.push((rest % size.max(1)).to_string());
+        let mut parts: Vec<usize> = Vec::new();
+        for &size in self.outer.iter().chain(&self.inner).collect::<Vec<_>>().into_iter().rev() {
+            parts.push(rest % size.max(1));
             rest /= size.max(1);
         }
         parts.reverse();
-        parts.insert(self.axis(), at.map_or_else(|| ":".to_owned(), |i| i.to_string()));
+        parts.insert(self.axis(), i);
+        parts
+    }
+
+    /// Column k as Python takes it from an array.
+    pub(crate) fn column(&self, k: usize) -> String {
+        let mut parts: Vec<String> = self.index(k, 0).iter().map(usize::to_string).collect();
+        ":".clone_into(&mut parts[self.axis()]);
         format!("[{}]", parts.join(", "))
     }
 

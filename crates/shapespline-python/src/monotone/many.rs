@@ -1,20 +1,18 @@
 //! Many data sets with their own x in one call: `fit_many_monotone`.
 
-use pyo3::{
-    exceptions::{PyTypeError, PyValueError},
-    prelude::*,
-};
+use pyo3::{exceptions::PyTypeError, prelude::*};
 use shapespline::monotone::{
     self, Extrapolation, Fairness, MonotoneError, QuarticOptions, QuinticOptions, Shape, Slopes,
 };
 
 use super::{
     fits::{Fits, fit_all},
-    options::{self, SlopesOption, monotone_error},
+    options::{self, SlopesOption},
     places::check_offsets,
     rows::PiecewiseRows,
 };
 use crate::{
+    error::{Value, invalid, monotone_error, must},
     input::{Array, Offsets, array, kind, text},
     options::choose,
     work::GoOn,
@@ -23,31 +21,29 @@ use crate::{
 /// Where the rows start, and where the last one ends.
 fn offsets_of(x: &Array<'_>, y: &Array<'_>, offsets: Option<Offsets>) -> PyResult<Vec<usize>> {
     if x.shape() != y.shape() {
-        return Err(PyValueError::new_err(format!(
-            "x and y must have the same shape, got {} and {}",
-            x.shape_text(),
-            y.shape_text()
-        )));
+        let [of_x, of_y] = [x, y].map(Array::shape_text);
+        let text = format!("x and y must have the same shape, got {of_x} and {of_y}");
+        return Err(invalid("y", &[], y.shape(), text));
     }
     let bounds = match (x.shape(), offsets) {
         (&[rows, n], None) => (0..=rows).map(|k| k * n).collect(),
         ([_], Some(Offsets(bounds))) => bounds,
         (_, None) => {
-            return Err(PyValueError::new_err(format!(
+            let text = format!(
                 "x and y must have two axes, or one and offsets; got shape {}",
                 x.shape_text()
-            )));
+            );
+            return Err(invalid("x", &[], x.shape(), text));
         }
         (_, Some(_)) => {
-            return Err(PyValueError::new_err(format!(
-                "with offsets, x and y must have one axis; got shape {}",
-                x.shape_text()
-            )));
+            let text =
+                format!("with offsets, x and y must have one axis; got shape {}", x.shape_text());
+            return Err(invalid("x", &[], x.shape(), text));
         }
     };
     check_offsets(&bounds, x.values().len())?;
     if bounds.len() < 2 {
-        return Err(PyValueError::new_err("there must be at least one row, got none"));
+        return Err(invalid("x", &[], Value::Nothing, "there must be at least one row, got none"));
     }
     Ok(bounds)
 }
@@ -134,10 +130,8 @@ pub(crate) fn fit_many_monotone(
     if let Some(SlopesOption::Given { shape, .. }) = &slopes
         && shape != y.shape()
     {
-        return Err(PyValueError::new_err(format!(
-            "slopes must have the shape of y, {}, got {shape:?}",
-            y.shape_text()
-        )));
+        let rule = format!("have the shape of y, {}", y.shape_text());
+        return Err(must("slopes", &[], rule, &shape[..]));
     }
     let (x, y) = (x.values(), y.values());
     let of = |from: usize, to: usize| match (&slopes, kind) {

@@ -1,41 +1,39 @@
 //! Options of the monotone schemes by name, and errors with the place in y.
 
-use pyo3::{
-    exceptions::{PyTypeError, PyValueError},
-    prelude::*,
-    types::PyBool,
-};
+use pyo3::{exceptions::PyTypeError, prelude::*, types::PyBool};
 use shapespline::monotone::{Extrapolation, Fairness, MonotoneError, Shape};
 
 use super::layout::Layout;
 use crate::{
+    error::{Refused, invalid, joined, must},
     input::{Numbers, array, count, float, kind, numbers, text},
-    options::choose,
+    options::{choose, unknown},
 };
-
-/// What the crate below refused.
-pub(crate) fn monotone_error(error: &MonotoneError) -> PyErr {
-    PyValueError::new_err(error.to_string())
-}
 
 /// What it refused in column k of y.
 pub(crate) fn column_error(error: &MonotoneError, layout: &Layout, k: usize) -> PyErr {
-    let place = |i: usize| layout.index(k, Some(i));
-    PyValueError::new_err(match error {
-        _ if layout.is_one() => error.to_string(),
-        MonotoneError::NotFinite { argument: argument @ ("y" | "slopes"), index, value } => {
-            format!("{argument}{} is {value}; every entry must be finite", place(*index))
+    let mut refused = Refused::from(error);
+    if layout.is_one() {
+        return refused.raise(error.to_string());
+    }
+    if let (&[i], "y" | "slopes") = (&refused.index[..], refused.argument) {
+        refused.index = layout.index(k, i);
+    }
+    let place = joined(&refused.index);
+    let text = match error {
+        MonotoneError::NotFinite { argument: argument @ ("y" | "slopes"), value, .. } => {
+            format!("{argument}[{place}] is {value}; every entry must be finite")
         }
-        MonotoneError::OutOfRange { quantity, argument: "y", index, value } => format!(
-            "the {quantity} at y{} = {value} is out of the range of double precision; rescale the data",
-            place(*index)
+        MonotoneError::OutOfRange { quantity, argument: "y", value, .. } => format!(
+            "the {quantity} at y[{place}] = {value} is out of the range of double precision; rescale the data"
         ),
         MonotoneError::NotIncreasing { .. }
         | MonotoneError::TooFew { .. }
         | MonotoneError::Shape { .. }
         | MonotoneError::NotFinite { .. } => error.to_string(),
-        _ => format!("y{}: {error}", layout.index(k, None)),
-    })
+        _ => format!("y{}: {error}", layout.column(k)),
+    };
+    refused.raise(text)
 }
 
 /// `extrapolate`: `None` leaves it to the object.
@@ -49,13 +47,11 @@ pub(crate) fn extrapolate(object: &Bound<'_, PyAny>) -> PyResult<Option<Extrapol
     }
     if let Some(name) = text(object) {
         let modes = [("linear", Extrapolation::LINEAR), ("clip", Extrapolation::CLIP)];
-        return modes.iter().find(|(known, _)| *known == name).map(|(_, m)| Some(*m)).ok_or_else(
-            || {
-                PyValueError::new_err(format!(
-                    "extrapolate must be one of None, True, False, 'linear', 'clip'; got '{name}'"
-                ))
-            },
-        );
+        return modes
+            .iter()
+            .find(|(known, _)| *known == name)
+            .map(|(_, m)| Some(*m))
+            .ok_or_else(|| unknown("extrapolate", &name, "None, True, False, 'linear', 'clip'"));
     }
     // NumPy's own bool is none of Python's.
     match object.extract::<bool>() {
@@ -87,10 +83,11 @@ pub(crate) fn slopes(object: &Bound<'_, PyAny>) -> PyResult<SlopesOption> {
         return match name.as_str() {
             "fritsch-butland" => Ok(SlopesOption::FritschButland),
             "optimal" => Ok(SlopesOption::Optimal),
-            _ => Err(PyValueError::new_err(format!(
-                "slopes must be one of 'optimal' (quintic only), 'fritsch-butland', or an array of \
-                 slopes; got '{name}'"
-            ))),
+            _ => Err(unknown(
+                "slopes",
+                &name,
+                "'optimal' (quintic only), 'fritsch-butland', or an array of slopes",
+            )),
         };
     }
     let given = array("slopes", object)?;
@@ -102,9 +99,9 @@ pub(crate) fn shape(object: &Bound<'_, PyAny>) -> PyResult<Shape> {
     // A pair: two numbers, or two arrays of one entry a segment.
     if let Ok(length) = object.len() {
         if length != 2 {
-            return Err(PyValueError::new_err(format!(
-                "shape must be a number or a pair (alpha, beta), got {length} entries"
-            )));
+            let text =
+                format!("shape must be a number or a pair (alpha, beta), got {length} entries");
+            return Err(invalid("shape", &[], length, text));
         }
         let side = |k: usize, name| numbers(name, &object.get_item(k)?);
         return match (side(0, "shape[0]")?, side(1, "shape[1]")?) {
@@ -127,7 +124,7 @@ pub(crate) fn integrals(object: &Bound<'_, PyAny>) -> PyResult<usize> {
     const MOST: usize = 100;
     match count("nu", 0, object)? {
         nu if nu <= MOST => Ok(nu),
-        nu => Err(PyValueError::new_err(format!("nu must be at most {MOST}, got {nu}"))),
+        nu => Err(must("nu", &[], format_args!("be at most {MOST}"), nu)),
     }
 }
 
@@ -136,7 +133,7 @@ fn finite(argument: &str, object: &Bound<'_, PyAny>) -> PyResult<f64> {
     if value.is_finite() {
         return Ok(value);
     }
-    Err(PyValueError::new_err(format!("{argument} must be finite, got {value}")))
+    Err(must(argument, &[], "be finite", value))
 }
 pub(crate) fn a(object: &Bound<'_, PyAny>) -> PyResult<f64> {
     finite("a", object)

@@ -1,10 +1,12 @@
 //! Places at which many rows are asked: one for all, the same for each, or its own for each.
 
-use pyo3::{exceptions::PyValueError, prelude::*};
+use pyo3::prelude::*;
 use shapespline::monotone::MonotoneError;
 
-use super::options::monotone_error;
-use crate::input::{Numbers, Offsets, Query, numbers};
+use crate::{
+    error::{invalid, monotone_error, must},
+    input::{Numbers, Offsets, Query, numbers},
+};
 
 /// Places for every row, as they come in.
 pub(super) struct Places<'py> {
@@ -40,27 +42,24 @@ impl<'py> Places<'py> {
             ([_], Some(Offsets(bounds))) => {
                 check_offsets(&bounds, length)?;
                 if bounds.len() != rows + 1 {
-                    return Err(PyValueError::new_err(format!(
-                        "offsets must have {} entries for {rows} rows, got {}",
-                        rows + 1,
-                        bounds.len()
-                    )));
+                    let rule = format!("have {} entries for {rows} rows", rows + 1);
+                    return Err(must("offsets", &[], rule, bounds.len()));
                 }
                 Arrangement::Ragged(bounds)
             }
             (_, Some(_)) => {
-                return Err(PyValueError::new_err(format!(
-                    "with offsets, {argument} must have one axis; got shape {text}"
-                )));
+                let text = format!("with offsets, {argument} must have one axis; got shape {text}");
+                return Err(invalid(argument, &[], &shape[..], text));
             }
             ([], None) => Arrangement::One,
             ([_], None) => Arrangement::Same,
             ([m, n], None) if *m == rows => Arrangement::Each(*n),
             _ => {
-                return Err(PyValueError::new_err(format!(
+                let text = format!(
                     "{argument} must be a number, have one axis, or be of shape ({rows}, n): a row \
                      for each; got shape {text}"
-                )));
+                );
+                return Err(invalid(argument, &[], &shape[..], text));
             }
         };
         let one = [if let Query::One(x) = query { x } else { f64::NAN }];
@@ -92,18 +91,13 @@ pub(super) fn end(argument: &str, object: &Bound<'_, PyAny>, rows: usize) -> PyR
         Numbers::One(value) => vec![value; rows],
         Numbers::Many(values) if values.len() == rows => values,
         Numbers::Many(values) => {
-            return Err(PyValueError::new_err(format!(
-                "{argument} must be a number or one for each of {rows} rows, got {}",
-                values.len()
-            )));
+            let rule = format!("be a number or one for each of {rows} rows");
+            return Err(must(argument, &[], rule, values.len()));
         }
     };
     match values.iter().position(|v| !v.is_finite()) {
         None => Ok(values),
-        Some(row) => Err(PyValueError::new_err(format!(
-            "{argument} must be finite, got {} for row {row}",
-            values[row]
-        ))),
+        Some(row) => Err(must(argument, &[row], "be finite", values[row])),
     }
 }
 

@@ -15,11 +15,12 @@ use super::{
     fits::{Column, Fits},
     function::{PiecewisePolynomial, damaged, read},
     layout::Layout,
-    options::{self, monotone_error},
+    options,
     places::{Arrangement, Places, end},
     spline::{diagnostics, energies},
 };
 use crate::{
+    error::monotone_error,
     input::Offsets,
     output::{FloatArray, shaped},
     work::detached,

@@ -1,19 +1,15 @@
 //! `MonotoneSpline`: what both families of interpolants have beyond a piecewise polynomial.
 
-use pyo3::{
-    IntoPyObjectExt, PyClassInitializer,
-    exceptions::{PyTypeError, PyValueError},
-    prelude::*,
-};
+use pyo3::{IntoPyObjectExt, PyClassInitializer, exceptions::PyTypeError, prelude::*};
 use shapespline::monotone;
 
 use super::{
     diagnostics::MonotoneDiagnostics,
     fits::{Column, Fits},
     function::PiecewisePolynomial,
-    options::monotone_error,
 };
 use crate::{
+    error::{invalid, monotone_error},
     input::Query,
     output::{FloatArray, room, shaped},
     work::detached,
@@ -164,11 +160,12 @@ impl MonotoneSpline {
             return Err(PyTypeError::new_err("inverse is for interpolants"));
         };
         if !base.layout.is_one() {
-            return Err(PyValueError::new_err(format!(
-                "inverse needs data with one axis; y has {} and {} columns",
+            let columns = base.fits.len();
+            let text = format!(
+                "inverse needs data with one axis; y has {} and {columns} columns",
                 base.layout.outer.len() + base.layout.inner.len() + 1,
-                base.fits.len()
-            )));
+            );
+            return Err(invalid("y", &[], columns, text));
         }
         match Query::named("y", y)? {
             Query::One(y) => f.inverse(y).map_err(|e| monotone_error(&e))?.into_bound_py_any(py),

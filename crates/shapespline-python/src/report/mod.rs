@@ -6,14 +6,14 @@ use std::sync::OnceLock;
 
 use pyo3::{
     call::PyCallArgs,
-    exceptions::{PyTypeError, PyValueError},
+    exceptions::PyTypeError,
     prelude::*,
     types::{PyBytes, PyDict},
 };
 use rayon::prelude::*;
 use shapespline::criteria::{self, Criteria, Record, Tolerances};
 
-use crate::{curve::boundary_object, pickle, work::detached};
+use crate::{curve::boundary_object, error::subject_error, pickle, work::detached};
 
 mod export;
 mod record;
@@ -68,7 +68,7 @@ impl ShapeReport {
         tolerances: Tolerances,
     ) -> PyResult<Self> {
         let check = || subject.judge(criteria, tolerances, |judge| judge.report());
-        let report = detached(py, subject.segments(), check).map_err(PyValueError::new_err)?;
+        let report = detached(py, subject.segments(), check).map_err(subject_error)?;
         Ok(Self::of(report, subject, criteria, tolerances))
     }
 
@@ -92,7 +92,7 @@ impl ShapeReport {
                 }
             })
         });
-        records.map_err(PyValueError::new_err)
+        records.map_err(subject_error)
     }
 
     /// The verdict in a word.
@@ -107,7 +107,7 @@ impl ShapeReport {
     /// What the paper says of nodes and of oscillation.
     fn notes(&self, py: Python<'_>) -> PyResult<criteria::Notes> {
         let make = || self.subject.judge(self.criteria, self.tolerances, |judge| judge.notes());
-        detached(py, self.subject.segments(), make).map_err(PyValueError::new_err)
+        detached(py, self.subject.segments(), make).map_err(subject_error)
     }
 }
 

@@ -4,7 +4,8 @@ use std::sync::Arc;
 
 use shapespline::{
     criteria::{
-        Checker, Criteria, Criterion, CurveChecker, Notes, Record, ShapeReport, Tolerances,
+        Checker, Criteria, Criterion, CurveChecker, CurveError, Notes, Record, ShapeReport,
+        Tolerances,
     },
     geometry::{DVec3, DataPolygon, PiecewiseBezier},
 };
@@ -73,23 +74,22 @@ impl Subject {
     /// Runs work with the checker of the subject.
     ///
     /// # Errors
-    /// In words: a curve that the points do not fit.
+    /// A curve that the points do not fit.
     pub(crate) fn judge<T>(
         &self,
         criteria: Criteria,
         tolerances: Tolerances,
         work: impl FnOnce(Judge<'_>) -> T,
-    ) -> Result<T, String> {
+    ) -> Result<T, CurveError> {
         match self {
             Self::Own(curve) => {
-                let polygon = curve.polygon().map_err(|error| error.to_string())?;
+                let polygon = curve.polygon()?;
                 let checker = Checker::new(&polygon, criteria, tolerances);
                 Ok(work(Judge::Own(checker, curve.cubic().legs(), curve.as_ref())))
             }
             Self::Other { polygon, curve, interpolation } => {
                 CurveChecker::new(polygon, curve, criteria, tolerances, *interpolation)
                     .map(|checker| work(Judge::Other(checker)))
-                    .map_err(|error| error.to_string())
             }
         }
     }
