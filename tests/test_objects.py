@@ -1,7 +1,10 @@
 """Curves as Python objects: immutable, picklable, copyable, hashable, shared between threads."""
 
 import copy
+import importlib
 import pickle
+import sys
+import weakref
 from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
@@ -188,3 +191,69 @@ def test_long_work_lets_other_threads_run(work):
         "evaluate": lambda: curve(u),
     }[work]
     assert threads.share_stood_still(task) < 0.5
+
+
+def everything():
+    """Return one object of every class that is made of curves, checks and functions."""
+    points = np.array([[0, 0, 0], [4, 0, 0], [4.5, 0.5, 0], [4.5, 1, 0.5], [4.5, 1, 5]])
+    x, y = np.arange(9.0), np.arange(9.0) ** 2
+    nu = ss.NuSpline.shape_preserving(points, "uniform")
+    f = ss.MonotoneQuintic(x, y)
+    rows = ss.fit_many_monotone([x, x], [y, -y])
+    report = nu.check()
+    return [
+        nu,
+        ss.TensionSpline(points),
+        ss.CatmullRom(points),
+        ss.Tangents([1, 0], [0, 1]),
+        ss.PiecewiseBezier(nu.bezier, nu.parameters),
+        report,
+        report.segments[0],
+        nu.diagnostics,
+        nu.history[0],
+        ss.fit_many(points, [0, 2, 5]),
+        ss.polygon_shape(points),
+        ss.MonotoneQuartic(x, y),
+        f,
+        f.derivative(),
+        f.diagnostics,
+        rows,
+        rows.derivative(),
+    ]
+
+
+@pytest.mark.parametrize("thing", everything(), ids=lambda thing: type(thing).__name__)
+def test_objects_can_be_weakly_referenced(thing):
+    assert weakref.ref(thing)() is thing
+
+
+def attributes():
+    """Yield every object with the name of each of its public attributes."""
+    count = ss.inflection_count([[0, 0], [1, 1], [2, 0], [3, 1]])
+    for thing in [*everything(), count]:
+        for name in dir(type(thing)):
+            member = getattr(type(thing), name)
+            if not name.startswith("_") and not callable(member) and hasattr(thing, name):
+                yield pytest.param(thing, name, id=f"{type(thing).__name__}.{name}")
+        yield pytest.param(thing, "anything", id=f"{type(thing).__name__}.anything")
+
+
+@pytest.mark.parametrize(("thing", "name"), list(attributes()))
+def test_no_attribute_of_any_object_can_be_set_or_deleted(thing, name):
+    with pytest.raises(AttributeError):
+        setattr(thing, name, 1)
+    with pytest.raises(AttributeError):
+        delattr(thing, name)
+
+
+def test_the_module_can_be_loaded_again():
+    again = importlib.reload(ss._core)
+    assert again.NuSpline is ss.NuSpline
+    np.testing.assert_array_equal(again.NuSpline([[0, 0], [3, 4]])(2.5), [1.5, 2.0])
+    del sys.modules["shapespline._core"]
+    try:
+        fresh = importlib.import_module("shapespline._core")
+        np.testing.assert_array_equal(fresh.NuSpline([[0, 0], [3, 4]])(2.5), [1.5, 2.0])
+        assert "Evaluate the curve" in fresh.NuSpline.__call__.__doc__
+    finally:
+        sys.modules["shapespline._core"] = again

@@ -75,7 +75,7 @@ class Fits(Sequence["SpaceCurve | None"]):
     curve 1: points[1] repeats points[0]: [5, 5, 0]; neighbouring points must differ
     """
 
-    __slots__ = ("_curves", "_errors")
+    __slots__ = ("__weakref__", "_curves", "_errors")
 
     def __init__(
         self, curves: Iterable[SpaceCurve | None], errors: Mapping[int, Exception]

@@ -216,16 +216,32 @@ class InflectionCount(int):
     (1, True)
     """
 
-    direction: Floats
-    exact: bool
+    _direction: tuple[float, ...]
+    _exact: bool
 
     def __new__(cls, count: int, direction: ArrayLike, exact: bool) -> InflectionCount:
         """Make the count."""
         self = super().__new__(cls, count)
-        self.direction = np.array(direction, dtype=float)
-        self.direction.flags.writeable = False
-        self.exact = exact
+        vars(self).update(_direction=tuple(map(float, np.asarray(direction))), _exact=bool(exact))
         return self
+
+    @property
+    def direction(self) -> Floats:
+        """Unit vector along which so many inflections are seen, shape (3,); a fresh array."""
+        return np.array(self._direction)
+
+    @property
+    def exact(self) -> bool:
+        """Whether the number is certain."""
+        return self._exact
+
+    def __setattr__(self, name: str, value: object) -> None:
+        """Refuse: a count is immutable, as every int."""
+        raise AttributeError(f"an InflectionCount is immutable: {name} cannot be set")
+
+    def __delattr__(self, name: str) -> None:
+        """Refuse, too."""
+        raise AttributeError(f"an InflectionCount is immutable: {name} cannot be deleted")
 
     def __reduce__(self) -> tuple[type[InflectionCount], tuple[int, Floats, bool]]:
         """Pickle all three."""

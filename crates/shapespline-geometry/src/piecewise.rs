@@ -2,9 +2,8 @@
 
 mod evaluate;
 
-use std::sync::OnceLock;
-
 use glam::DVec3;
+use once_cell::race::OnceBox;
 use rayon::prelude::*;
 
 use crate::{
@@ -39,7 +38,7 @@ pub struct PiecewiseCubic {
     domain: Domain,
     /// Made by the first large unsorted evaluation.
     #[cfg_attr(feature = "serde", serde(skip))]
-    locator: OnceLock<Option<Locator>>,
+    locator: OnceBox<Option<Locator>>,
 }
 
 /// What was stored, by whomever: it becomes a curve only if the constructor takes it.
@@ -72,7 +71,7 @@ impl Clone for PiecewiseCubic {
             legs: self.legs.clone(),
             dimension: self.dimension,
             domain: self.domain,
-            locator: OnceLock::new(),
+            locator: OnceBox::new(),
         }
     }
 }
@@ -120,7 +119,7 @@ impl PiecewiseCubic {
         check_increasing("knots", &knots)?;
         check_room("points", &points)?;
         check_legs(&legs)?;
-        Ok(Self { knots, points, legs, dimension, domain, locator: OnceLock::new() })
+        Ok(Self { knots, points, legs, dimension, domain, locator: OnceBox::new() })
     }
 
     /// Curve through the points of a polygon, with the end legs of each segment.
@@ -140,7 +139,7 @@ impl PiecewiseCubic {
         let domain = if polygon.is_closed() { Domain::Closed } else { Domain::Open };
         let dimension = polygon.dimension();
         let (points, knots) = polygon.into_points_and_parameters();
-        Self { knots, points, legs, dimension, domain, locator: OnceLock::new() }
+        Self { knots, points, legs, dimension, domain, locator: OnceBox::new() }
     }
 
     /// The knots `u_0 < … < u_N`.
@@ -206,7 +205,7 @@ impl PiecewiseCubic {
     }
 
     pub(crate) fn table(&self) -> Option<&Locator> {
-        self.locator.get_or_init(|| Locator::new(&self.knots)).as_ref()
+        self.locator.get_or_init(|| Box::new(Locator::new(&self.knots))).as_ref()
     }
 
     #[inline]

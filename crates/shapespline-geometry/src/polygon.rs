@@ -1,8 +1,9 @@
 //! The data polygon: what the points themselves say about the shape of a curve through them.
 
-use std::{ops::Range, sync::OnceLock};
+use std::ops::Range;
 
 use glam::DVec3;
+use once_cell::race::OnceBox;
 use rayon::prelude::*;
 
 use crate::{
@@ -58,7 +59,7 @@ pub struct DataPolygon {
     points: Vec<DVec3>,
     parameters: Vec<f64>,
     /// `l_{−1}, l_0, …, l_{N−1}, l_N`, made when shape is first asked for.
-    directions: OnceLock<Vec<DVec3>>,
+    directions: OnceBox<Vec<DVec3>>,
     boundary: Boundary,
     /// `D_0` and `D_N`, where the boundary has them.
     tangents: Option<[DVec3; 2]>,
@@ -112,7 +113,7 @@ impl DataPolygon {
             check_room("points", &points)?;
         }
         let tangents = end_tangents(&points, &parameters, boundary)?;
-        let directions = OnceLock::new();
+        let directions = OnceBox::new();
         Ok(Self { points, parameters, directions, boundary, tangents, dimension })
     }
 
@@ -223,7 +224,7 @@ impl DataPolygon {
                 (_, Some([start, end])) => (normalize(start), normalize(end)),
                 (_, None) => (all[1], all[n]),
             };
-            all
+            Box::new(all)
         })
     }
 

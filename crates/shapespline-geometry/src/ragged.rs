@@ -9,6 +9,9 @@ use crate::InputError;
 /// Rows that a thread takes at once.
 const FEW: usize = 4;
 
+/// Most threads that are made where a caller asks for more than the machine has processors.
+const MAX_THREADS: usize = 256;
+
 /// Rows of different lengths in one array: row `k` is `values[offsets[k]..offsets[k + 1]]`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ragged<'a, T> {
@@ -67,10 +70,12 @@ impl<'a, T: Sync> Ragged<'a, T> {
 
     /// Calls `work` with every row and its index, in parallel; results in the order of the rows.
     ///
-    /// `threads`: `None` takes rayon's pool as it is (the caller's, else the global one).
+    /// `threads`: `None` takes rayon's pool as it is (the caller's, else the global one), which also
+    /// does the work where the system grants no threads of its own. No more are made than there are
+    /// rows.
     ///
     /// # Errors
-    /// Zero threads, or more than the system grants.
+    /// Zero threads.
     pub fn map<R: Send>(
         &self,
         threads: Option<usize>,
@@ -80,14 +85,15 @@ impl<'a, T: Sync> Ragged<'a, T> {
         let parts = || (0..self.len()).into_par_iter().with_max_len(FEW);
         let run = || parts().map(|k| work(k, self.row(k))).collect();
         let Some(count) = threads else { return Ok(run()) };
-        let refused =
-            |allowed| Err(InputError::Scalar { argument: "threads", value: count as f64, allowed });
         if count == 0 {
-            return refused("at least 1");
+            let (argument, value) = ("threads", 0.0);
+            return Err(InputError::Scalar { argument, value, allowed: "at least 1" });
         }
+        let processors = std::thread::available_parallelism().map_or(1, usize::from);
+        let count = count.min(self.len().max(1)).min(processors.max(MAX_THREADS));
         match rayon::ThreadPoolBuilder::new().num_threads(count).build() {
             Ok(pool) => Ok(pool.install(run)),
-            Err(_) => refused("no more threads than the system grants"),
+            Err(_) => Ok(run()),
         }
     }
 }
@@ -101,7 +107,7 @@ mod tests {
         let values: Vec<usize> = (0..100).collect();
         let offsets = [0, 3, 3, 50, 100];
         let rows = Ragged::new(&values, &offsets).unwrap();
-        for threads in [None, Some(1), Some(3)] {
+        for threads in [None, Some(1), Some(3), Some(usize::MAX)] {
             let sums = rows.map(threads, |k, row| (k, row.iter().sum::<usize>())).unwrap();
             assert_eq!(sums, [(0, 3), (1, 0), (2, 1222), (3, 3725)]);
         }

@@ -4,7 +4,7 @@ use crate::bernstein;
 use crate::extrapolation::Extrapolation;
 use crate::locate::Searcher;
 use crate::piecewise::PiecewisePolynomial;
-use std::sync::OnceLock;
+use once_cell::race::OnceBox;
 
 /// Items of a level that one item of the next sums up: levels take a fifteenth of a number a piece.
 const WIDTH: usize = 16;
@@ -57,7 +57,7 @@ impl Sums {
 
 /// Sums that are made at the first request. A clone starts without.
 #[derive(Debug, Default)]
-pub(crate) struct Lazy(OnceLock<Sums>);
+pub(crate) struct Lazy(OnceBox<Sums>);
 
 impl Clone for Lazy {
     fn clone(&self) -> Self {
@@ -67,7 +67,7 @@ impl Clone for Lazy {
 
 impl Lazy {
     pub(crate) fn get(&self, n: usize, piece: impl Fn(usize) -> f64) -> &Sums {
-        self.0.get_or_init(|| Sums::new(n, piece))
+        self.0.get_or_init(|| Box::new(Sums::new(n, piece)))
     }
 }
 

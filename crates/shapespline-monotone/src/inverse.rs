@@ -52,7 +52,7 @@ impl MonotoneSpline {
                 None if falling => y.iter().map(|v| -v).collect(),
                 _ => Vec::new(),
             };
-            Inverse { broken, falling, turned, locator: Locator::default() }
+            Box::new(Inverse { broken, falling, turned, locator: Locator::default() })
         });
         match inverse.broken {
             Some(index) => Err(MonotoneError::NotInvertible { index, value: self.y()[index] }),

@@ -1,8 +1,8 @@
 //! Finding the segments of queries: a table of equal buckets over the knots, built at the first large request.
 
 use crate::tiles::TILE;
+use once_cell::race::OnceBox;
 use std::ops::Range;
-use std::sync::OnceLock;
 
 /// Knots from which a table pays; below it a binary search stays in the first cache lines.
 const SMALL: usize = 8;
@@ -13,7 +13,7 @@ const COMPARED: usize = 3;
 /// Finds segments among increasing knots. O(1) expected on knots that are not too uneven, O(log N) at worst.
 #[derive(Debug, Default)]
 pub(crate) struct Locator {
-    table: OnceLock<Option<Table>>,
+    table: OnceBox<Option<Table>>,
 }
 
 impl Clone for Locator {
@@ -72,7 +72,7 @@ impl Locator {
     /// A searcher; with `many` the table is built if it is not there yet.
     pub(crate) fn searcher<'a>(&'a self, x: &'a [f64], many: bool) -> Searcher<'a> {
         let table = if many {
-            self.table.get_or_init(|| Table::new(x)).as_ref()
+            self.table.get_or_init(|| Box::new(Table::new(x))).as_ref()
         } else {
             self.table.get().and_then(Option::as_ref)
         };

@@ -7,7 +7,7 @@ use crate::inverse::Inverse;
 use crate::locate::Locator;
 use crate::piecewise::PiecewisePolynomial;
 use crate::record::{self, Record, TILE};
-use std::sync::OnceLock;
+use once_cell::race::OnceBox;
 
 /// What the pieces are beyond their end values and slopes.
 #[derive(Debug, Clone, PartialEq)]
@@ -40,7 +40,7 @@ pub struct MonotoneSpline {
 #[derive(Debug, Default)]
 pub(crate) struct Cached {
     pub(crate) locator: Locator,
-    pub(crate) inverse: OnceLock<Inverse>,
+    pub(crate) inverse: OnceBox<Inverse>,
     pub(crate) integrals: Lazy,
 }
 

@@ -178,16 +178,9 @@ impl CatmullRom {
         let (criteria, tolerances) =
             (criteria.0, tolerances(coplanarity, collinearity, tolerance)?);
         let options = HandleOptions { criteria, tolerances, safety, continuity };
-        preserve(
-            class.py(),
-            data,
-            &Failure::of_handles(criteria, tolerances),
-            |polygon, monitor| {
-                catmull_rom::CatmullRom::shape_preserving_with(polygon, &options, &mut |_| {
-                    monitor()
-                })
-            },
-        )
+        preserve(class.py(), data, &Failure::of_handles(criteria, tolerances), |polygon, go_on| {
+            catmull_rom::CatmullRom::shape_preserving_with(polygon, &options, &mut |_| go_on())
+        })
     }
 
     /// What is continuous at the points besides the direction: ``"C1"`` or ``"G1"``.

@@ -32,7 +32,7 @@ pub(crate) struct Search {
 /// >>> points = [[0, 0, 0], [4, 0, 0], [4.5, 0.5, 0], [4.5, 1, 0.5], [4.5, 1, 5]]
 /// >>> ss.NuSpline.shape_preserving(points, "uniform").diagnostics
 /// Diagnostics(status='solved', iterations=..., solves=..., relaxations=..., nodes_changed=5)
-#[pyclass(module = "shapespline", frozen, get_all, eq, hash)]
+#[pyclass(module = "shapespline", frozen, get_all, eq, hash, weakref)]
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub(crate) struct Diagnostics {
     /// How the search ended: ``"solved"`` or ``"iteration-limit"``.
@@ -109,7 +109,7 @@ impl Diagnostics {
 /// >>> points = [[0, 0, 0], [4, 0, 0], [4.5, 0.5, 0], [4.5, 1, 0.5], [4.5, 1, 5]]
 /// >>> ss.NuSpline.shape_preserving(points, "uniform").history[0]
 /// SearchStep(phase='raise', violations=2, changed=5)
-#[pyclass(module = "shapespline", frozen, get_all, eq, hash)]
+#[pyclass(module = "shapespline", frozen, get_all, eq, hash, weakref)]
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub(crate) struct SearchStep {
     /// ``"raise"``, ``"relax"`` or ``"verify"``.

@@ -16,7 +16,7 @@ use crate::{
     input::Points,
     options::{CriteriaNames, Ends, Parameters, tolerances},
     report::{ShapeReport, Subject},
-    work::{Monitor, detached, interruptible},
+    work::{GoOn, detached, interruptible},
 };
 
 /// What every curve is made from.
@@ -77,10 +77,10 @@ pub(crate) fn preserve<C: Member>(
     py: Python<'_>,
     data: Data,
     failure: &Failure,
-    search: impl FnOnce(DataPolygon, Monitor<'_>) -> Result<Fit<C>, FitError> + Send,
+    search: impl FnOnce(DataPolygon, GoOn<'_>) -> Result<Fit<C>, FitError> + Send,
 ) -> PyResult<Py<PyAny>> {
     let size = data.points.len();
-    interruptible(py, size, |ask| Ok(Made::searched(search(data.polygon()?, ask)?)))?
+    interruptible(py, size, |go_on| Ok(Made::searched(search(data.polygon()?, go_on)?)))?
         .map_err(fit_error)?
         .into_python(py, failure, None)
 }

@@ -59,6 +59,6 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     monotone::register(module)?;
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
     let py = module.py();
-    curve::document_call(&py.get_type::<curve::SpaceCurve>())?;
-    curve::document_call(&py.get_type::<piecewise::PiecewiseBezier>())
+    curve::document_call::<curve::SpaceCurve>(py)?;
+    curve::document_call::<piecewise::PiecewiseBezier>(py)
 }

@@ -22,11 +22,8 @@ use crate::{
     fit::{Failure, Made, Searching},
     input::{Offsets, PointArray},
     options::{self, CriteriaNames, Ends, Method, Parameters},
-    work::{PARALLEL, interruptible_each, interruptible_many},
+    work::{GoOn, PARALLEL, interruptible, interruptible_each},
 };
-
-/// The question of a search whether to go on.
-type Ask<'a> = &'a (dyn Fn() -> ControlFlow<()> + Sync);
 
 /// What the curves are made from, and on how many threads.
 struct Rows<'py> {
@@ -42,7 +39,7 @@ fn run<'py>(
     py: Python<'py>,
     rows: Rows<'py>,
     failure: &Failure,
-    make: impl Fn(DataPolygon, Ask<'_>) -> Result<Made, FitError> + Sync,
+    make: impl Fn(DataPolygon, GoOn<'_>) -> Result<Made, FitError> + Sync,
 ) -> PyResult<(Bound<'py, PyTuple>, Bound<'py, PyDict>)> {
     let Rows { points, offsets, parametrization, boundary, threads } = rows;
     // A line that every option suits: an error now is the options', not that of any curve.
@@ -58,18 +55,18 @@ fn run<'py>(
     let points = Ragged::new(&points, &offsets.0).map_err(input_error)?;
     let collection = Collection { points, dimension, parametrization, boundary };
     collection.check().map_err(input_error)?;
-    let fit = |polygon, ask: Ask<'_>| match ask() {
+    let fit = |polygon, ask: GoOn<'_>| match ask() {
         ControlFlow::Continue(()) => make(polygon, ask).map(Some),
         ControlFlow::Break(()) => Ok(None),
     };
     let longest = (0..points.len()).map(|k| points.range(k).len()).max().unwrap_or(0);
     let fits = if threads.is_none() && longest < PARALLEL {
         // Errors are large and rare.
-        let fit_one = |k, ask: Ask<'_>| collection.fit(k, |p| fit(p, ask)).map_err(Box::new);
+        let fit_one = |k, ask: GoOn<'_>| collection.fit(k, |p| fit(p, ask)).map_err(Box::new);
         interruptible_each(py, points.len(), fit_one)?
     } else {
-        let fit_all = |ask: Ask<'_>| fit_many(&collection, threads, |p| fit(p, ask));
-        let fits = interruptible_many(py, fit_all)?.map_err(input_error)?;
+        let fit_all = |ask: GoOn<'_>| fit_many(&collection, threads, |p| fit(p, ask));
+        let fits = interruptible(py, usize::MAX, fit_all)?.map_err(input_error)?;
         fits.into_iter().map(|fit| fit.map_err(Box::new)).collect()
     };
 

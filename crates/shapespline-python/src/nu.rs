@@ -181,8 +181,8 @@ impl NuSpline {
             collinearity,
             tolerance,
         )?;
-        preserve(class.py(), data, &Failure::from(&search), |polygon, monitor| {
-            nu::NuSpline::shape_preserving_with(polygon, &search, &mut |_| monitor())
+        preserve(class.py(), data, &Failure::from(&search), |polygon, go_on| {
+            nu::NuSpline::shape_preserving_with(polygon, &search, &mut |_| go_on())
         })
     }
 }

@@ -59,7 +59,7 @@ use crate::{
 /// <PiecewiseBezier: 1 rational piece of degree 2 in the plane, u from 0 to 1>
 /// >>> bool(np.allclose(np.hypot(*arc(np.linspace(0, 1, 9)).T), 1))
 /// True
-#[pyclass(module = "shapespline", frozen)]
+#[pyclass(module = "shapespline", frozen, weakref)]
 pub(crate) struct PiecewiseBezier {
     pub(crate) curve: Arc<geometry::PiecewiseBezier>,
 }

@@ -19,7 +19,7 @@ use crate::{
     output::{vector, vectors},
     piecewise::PiecewiseBezier,
     report::{ShapeReport, Subject},
-    work::{detached, interruptible_many},
+    work::{detached, interruptible},
 };
 
 /// Directions of the curve at its two ends that differ by a smaller sine close it smoothly.
@@ -107,6 +107,9 @@ fn direction<'a>(mut control: impl Iterator<Item = &'a DVec4>, chord: f64) -> DV
     leg.map_or(DVec3::ZERO, normalize)
 }
 
+/// The size of work that is spread over all threads however few its points.
+const ALL: usize = usize::MAX;
+
 /// `direction`: a vector in space, or `None`.
 fn view(object: &Bound<'_, PyAny>) -> PyResult<Option<DVec3>> {
     if object.is_none() {
@@ -149,7 +152,7 @@ pub(crate) fn _polygon_inflections<'py>(
             detached(py, points.len(), || polygon_inflections_from(&points, direction).map(Some))
         }
         None => {
-            interruptible_many(py, |go_on| polygon_inflections_with(&points, dimension, go_on))?
+            interruptible(py, ALL, |go_on| polygon_inflections_with(&points, dimension, go_on))?
         }
     };
     finished(py, count.map_err(input_error)?)
@@ -166,7 +169,7 @@ pub(crate) fn _curve_inflections<'py>(
         Some(direction) => {
             detached(py, curve.pieces(), || curve_inflections_from(curve, direction).map(Some))
         }
-        None => interruptible_many(py, |go_on| Ok(curve_inflections_with(curve, go_on)))?,
+        None => interruptible(py, ALL, |go_on| Ok(curve_inflections_with(curve, go_on)))?,
     };
     finished(py, count.map_err(input_error)?)
 }

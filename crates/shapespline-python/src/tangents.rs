@@ -43,7 +43,7 @@ use crate::{
 /// >>> curve = ss.NuSpline([[0, 0, 0], [1, 1, 0], [1, 2, 1]], boundary=ends)
 /// >>> curve.tangents[-1]
 /// array([0., 2., 0.])
-#[pyclass(module = "shapespline", frozen, eq, hash)]
+#[pyclass(module = "shapespline", frozen, eq, hash, weakref)]
 #[derive(Clone, Copy, PartialEq)]
 pub(crate) struct Tangents {
     start: DVec3,

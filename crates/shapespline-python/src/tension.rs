@@ -259,8 +259,8 @@ impl TensionSpline {
             collinearity,
             tolerance,
         )?;
-        preserve(class.py(), data, &Failure::from(&search), |polygon, monitor| {
-            tension::TensionSpline::shape_preserving_with(polygon, &search, &mut |_| monitor())
+        preserve(class.py(), data, &Failure::from(&search), |polygon, go_on| {
+            tension::TensionSpline::shape_preserving_with(polygon, &search, &mut |_| go_on())
         })
     }
 

@@ -1,6 +1,7 @@
 //! Long work: without the interpreter lock, on a thread pool that survives `fork`, and with Ctrl-C.
 
 use std::{
+    cell::OnceCell,
     ops::ControlFlow,
     process,
     sync::{
@@ -11,6 +12,7 @@ use std::{
     time::{Duration, Instant},
 };
 
+use arc_swap::ArcSwapOption;
 use pyo3::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
@@ -20,24 +22,46 @@ pub(crate) const PARALLEL: usize = 8192;
 /// How often a long search asks whether Ctrl-C was pressed.
 const PATIENCE: Duration = Duration::from_millis(50);
 
-/// The pool of this process.
+/// Threads, and the process that has them.
+struct Pool {
+    process: u32,
+    threads: ThreadPool,
+}
+
+/// The pool of this process, or `None` where the system grants no threads.
 ///
 /// A forked child inherits a pool without its threads, and would wait for them for ever (Python forks
-/// in `multiprocessing` on Linux): so the pool remembers its process, and a child makes a new one.
-fn pool() -> Option<Arc<ThreadPool>> {
-    static POOL: Mutex<Option<(u32, Arc<ThreadPool>)>> = Mutex::new(None);
-    let mut pool = POOL.lock().unwrap_or_else(PoisonError::into_inner);
-    match &*pool {
-        Some((process, threads)) if *process == process::id() => Some(Arc::clone(threads)),
-        _ => {
-            let threads = Arc::new(ThreadPoolBuilder::new().build().ok()?);
-            if let Some((_, parents)) = pool.replace((process::id(), Arc::clone(&threads))) {
-                // Its threads live in the parent process.
-                std::mem::forget(parents);
-            }
-            Some(threads)
-        }
+/// in `multiprocessing` on Linux), so the pool remembers its process, and a child makes a new one. It
+/// inherits locks as they are, too, held by threads that it does not have: so there is none here. Two
+/// threads may make a pool at the same time; the first to publish its own wins.
+fn pool() -> Option<Arc<Pool>> {
+    static POOL: ArcSwapOption<Pool> = ArcSwapOption::const_empty();
+    let process = process::id();
+    let ours = |pool: &Arc<Pool>| pool.process == process;
+    let found = POOL.load_full();
+    if let Some(pool) = found.as_ref().filter(|pool| ours(pool)) {
+        return Some(Arc::clone(pool));
     }
+    let threads = ThreadPoolBuilder::new().build().ok()?;
+    let made = Some(Arc::new(Pool { process, threads }));
+    let published = POOL.compare_and_swap(&found, made.clone());
+    let winner = published.as_ref().filter(|pool| ours(pool)).cloned();
+    // A pool of the parent is never dropped: that would wake its threads, which live over there.
+    std::mem::forget((found, published));
+    winner.or(made)
+}
+
+/// Runs work in a pool of this thread alone, for systems that grant no other (a limit on processes or
+/// memory): outside any pool the crates below would ask for rayon's global one, which panics there.
+fn without_threads<T: Send>(work: impl FnOnce() -> T + Send) -> T {
+    thread_local! {
+        static ALONE: OnceCell<Option<ThreadPool>> = const { OnceCell::new() };
+    }
+    let one = || ThreadPoolBuilder::new().num_threads(1).use_current_thread().build().ok();
+    ALONE.with(|pool| match pool.get_or_init(one) {
+        Some(pool) => pool.install(work),
+        None => work(),
+    })
 }
 
 /// Runs work on `size` items while other Python threads go on.
@@ -46,53 +70,90 @@ pub(crate) fn detached<T: Send>(py: Python<'_>, size: usize, work: impl FnOnce()
         return py.detach(work);
     }
     py.detach(|| match pool() {
-        Some(pool) => pool.install(work),
-        None => work(),
+        Some(pool) => pool.threads.install(work),
+        None => without_threads(work),
     })
 }
 
-/// A search's question whether to go on.
-pub(crate) type Monitor<'a> = &'a mut (dyn FnMut() -> ControlFlow<()> + Send);
-
-/// The same question of many searches at once, asked from any thread.
+/// A question whether to go on, asked from any thread: `Break` after Ctrl-C.
 pub(crate) type GoOn<'a> = &'a (dyn Fn() -> ControlFlow<()> + Sync);
 
-/// Whether Ctrl-C was not pressed.
 fn go_on(stop: &AtomicBool) -> ControlFlow<()> {
     if stop.load(Ordering::Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
 }
 
-/// Runs a search over `size` items that asks a monitor at each step whether to go on; Ctrl-C ends it
-/// with `KeyboardInterrupt`.
+/// Runs work on `size` items that asks at least every second whether to go on; Ctrl-C ends it with
+/// `KeyboardInterrupt`, whatever it has made.
 pub(crate) fn interruptible<T: Send>(
     py: Python<'_>,
     size: usize,
-    search: impl FnOnce(Monitor<'_>) -> T + Send,
+    work: impl FnOnce(GoOn<'_>) -> T + Send,
 ) -> PyResult<T> {
-    let done = if size < PARALLEL {
-        py.detach(|| alone(search))
-    } else {
-        py.detach(|| match pool() {
-            Some(pool) => watched(&pool, |stop| search(&mut || go_on(stop))),
-            None => alone(search),
-        })
-    };
+    let done = py.detach(|| {
+        if size < PARALLEL {
+            return alone(work);
+        }
+        match pool() {
+            Some(pool) => watched(&pool.threads, work),
+            None => without_threads(|| alone(work)),
+        }
+    });
     // What came in while the last step ran.
     py.check_signals()?;
     done
 }
 
-/// Runs many searches at once, which ask the same question (of a function, for any thread may ask).
-pub(crate) fn interruptible_many<T: Send>(
-    py: Python<'_>,
-    searches: impl FnOnce(GoOn<'_>) -> T + Send,
-) -> PyResult<T> {
-    let done = py.detach(|| match pool() {
-        Some(pool) => watched(&pool, |stop| searches(&|| go_on(stop))),
-        None => Ok(searches(&|| ControlFlow::Continue(()))),
+/// The work runs on this thread, and asks for signals itself.
+fn alone<T>(work: impl FnOnce(GoOn<'_>) -> T) -> PyResult<T> {
+    let signals = Mutex::new(Signals { asked: Instant::now(), interrupt: None });
+    let ask = || signals.lock().unwrap_or_else(PoisonError::into_inner).ask();
+    let result = work(&ask);
+    let signals = signals.into_inner().unwrap_or_else(PoisonError::into_inner);
+    signals.interrupt.map_or(Ok(result), Err)
+}
+
+/// Signals that a thread asks for now and then.
+struct Signals {
+    asked: Instant,
+    interrupt: Option<PyErr>,
+}
+
+impl Signals {
+    fn ask(&mut self) -> ControlFlow<()> {
+        if self.interrupt.is_none() && self.asked.elapsed() >= PATIENCE {
+            self.interrupt = Python::attach(|py| py.check_signals()).err();
+            self.asked = Instant::now();
+        }
+        if self.interrupt.is_some() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    }
+}
+
+/// The work runs in the pool; this thread, which may be the one that signals reach, watches.
+fn watched<T: Send>(pool: &ThreadPool, work: impl FnOnce(GoOn<'_>) -> T + Send) -> PyResult<T> {
+    let stop = AtomicBool::new(false);
+    let (sender, receiver) = mpsc::channel();
+    let mut interrupt = None;
+    let mut result = None;
+    pool.in_place_scope(|scope| {
+        scope.spawn(|_| {
+            result = Some(work(&|| go_on(&stop)));
+            // The watcher may have gone: then nobody waits for this.
+            let _ = sender.send(());
+        });
+        while receiver.recv_timeout(PATIENCE) == Err(mpsc::RecvTimeoutError::Timeout) {
+            if let Err(error) = Python::attach(|py| py.check_signals()) {
+                stop.store(true, Ordering::Relaxed);
+                interrupt = Some(error);
+                break;
+            }
+        }
     });
-    py.check_signals()?;
-    done
+    match (interrupt, result) {
+        (Some(error), _) => Err(error),
+        (None, Some(result)) => Ok(result),
+        // A panic in the work has been handed on by the scope already.
+        (None, None) => Err(pyo3::exceptions::PyRuntimeError::new_err("the work gave no result")),
+    }
 }
 
 /// Runs many short searches, none of which uses threads itself: on this thread, which begins at once and
@@ -114,24 +175,19 @@ pub(crate) fn interruptible_each<T: Send>(
             watch();
         }
     };
-    let mut interrupt = None;
+    let mut signals = Signals { asked: Instant::now(), interrupt: None };
     let all = py.detach(|| {
-        let mut asked = Instant::now();
         let mut here = || {
             take(&mut || {
-                if asked.elapsed() >= PATIENCE {
-                    if let Err(error) = Python::attach(|py| py.check_signals()) {
-                        stop.store(true, Ordering::Relaxed);
-                        interrupt = Some(error);
-                    }
-                    asked = Instant::now();
+                if signals.ask().is_break() {
+                    stop.store(true, Ordering::Relaxed);
                 }
             })
         };
         let Some(pool) = pool() else { return here() };
         let others = Mutex::new(Vec::new());
-        let mut all = pool.in_place_scope(|scope| {
-            for _ in 1..pool.current_num_threads().min(count) {
+        let mut all = pool.threads.in_place_scope(|scope| {
+            for _ in 1..pool.threads.current_num_threads().min(count) {
                 scope.spawn(|_| {
                     let done = take(&mut || {});
                     others.lock().unwrap_or_else(PoisonError::into_inner).extend(done);
@@ -142,7 +198,7 @@ pub(crate) fn interruptible_each<T: Send>(
         all.extend(others.into_inner().unwrap_or_else(PoisonError::into_inner));
         all
     });
-    if let Some(error) = interrupt {
+    if let Some(error) = signals.interrupt {
         return Err(error);
     }
     py.check_signals()?;
@@ -151,49 +207,4 @@ pub(crate) fn interruptible_each<T: Send>(
         in_order[k] = Some(found);
     }
     Ok(in_order.into_iter().flatten().collect())
-}
-
-/// The search runs on this thread, and asks for signals itself.
-fn alone<T>(search: impl FnOnce(Monitor<'_>) -> T) -> PyResult<T> {
-    let mut asked = Instant::now();
-    let mut interrupt = None;
-    let result = search(&mut || {
-        if asked.elapsed() >= PATIENCE {
-            interrupt = Python::attach(|py| py.check_signals()).err();
-            asked = Instant::now();
-        }
-        if interrupt.is_some() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
-    });
-    interrupt.map_or(Ok(result), Err)
-}
-
-/// The search runs in the pool; this thread, which may be the one that signals reach, watches.
-fn watched<T: Send>(
-    pool: &ThreadPool,
-    search: impl FnOnce(&AtomicBool) -> T + Send,
-) -> PyResult<T> {
-    let stop = AtomicBool::new(false);
-    let (sender, receiver) = mpsc::channel();
-    let mut interrupt = None;
-    let mut result = None;
-    pool.in_place_scope(|scope| {
-        scope.spawn(|_| {
-            result = Some(search(&stop));
-            // The watcher may have gone: then nobody waits for this.
-            let _ = sender.send(());
-        });
-        while receiver.recv_timeout(PATIENCE) == Err(mpsc::RecvTimeoutError::Timeout) {
-            if let Err(error) = Python::attach(|py| py.check_signals()) {
-                stop.store(true, Ordering::Relaxed);
-                interrupt = Some(error);
-                break;
-            }
-        }
-    });
-    match (interrupt, result) {
-        (Some(error), _) => Err(error),
-        (None, Some(result)) => Ok(result),
-        // A panic in the search has been handed on by the scope already.
-        (None, None) => Err(pyo3::exceptions::PyRuntimeError::new_err("the search gave no result")),
-    }
 }

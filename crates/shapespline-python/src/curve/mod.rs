@@ -6,12 +6,7 @@
 
 use std::{any::Any, fmt::Debug, sync::Arc};
 
-use pyo3::{
-    PyClass, PyClassInitializer,
-    exceptions::PyTypeError,
-    prelude::*,
-    types::{PyBytes, PyType},
-};
+use pyo3::{PyClass, PyClassInitializer, exceptions::PyTypeError, prelude::*, types::PyBytes};
 use shapespline::{
     catmull_rom::CatmullRom,
     criteria::{Record, ShapeReport},
@@ -162,7 +157,7 @@ impl dyn Curve + '_ {
 /// True
 /// >>> curve([0.0, 0.5]).shape
 /// (2, 3)
-#[pyclass(module = "shapespline", frozen, subclass)]
+#[pyclass(module = "shapespline", frozen, subclass, weakref)]
 pub(crate) struct SpaceCurve {
     pub(crate) curve: Arc<dyn Curve>,
     pub(crate) search: Option<Arc<Search>>,
@@ -263,8 +258,13 @@ fn short(x: f64) -> String {
 /// Makes calling a curve a documented method.
 ///
 /// pyo3 puts `__call__` into a slot, and Python shows every slot as `(*args, **kwargs)` without a
-/// word: the most used method would be the only one without help.
-pub(crate) fn document_call(class: &Bound<'_, PyType>) -> PyResult<()> {
-    class.setattr("__call__", class.getattr("_call")?)?;
-    class.delattr("_call")
+/// word: the most used method would be the only one without help. Classes outlive a module that is
+/// loaded again, so this may have been done.
+pub(crate) fn document_call<C: PyClass>(py: Python<'_>) -> PyResult<()> {
+    let class = py.get_type::<C>();
+    if class.hasattr("_call")? {
+        class.setattr("__call__", class.getattr("_call")?)?;
+        class.delattr("_call")?;
+    }
+    Ok(())
 }

@@ -30,7 +30,7 @@ use shapespline::monotone::{MonotoneQuartic, MonotoneQuintic, Solver};
 /// >>> how = ss.MonotoneQuintic([0, 1, 2, 5], [0, 0.1, 3, 3.2]).diagnostics
 /// >>> how.solver, how.converged, how.certified
 /// ('interior-point', True, True)
-#[pyclass(module = "shapespline", frozen, get_all, eq)]
+#[pyclass(module = "shapespline", frozen, get_all, eq, weakref)]
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct MonotoneDiagnostics {
     /// The method: ``"active-set"``, ``"interior-point"`` or ``"local"``.

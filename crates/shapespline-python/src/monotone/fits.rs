@@ -12,11 +12,8 @@ use shapespline::monotone::{
 
 use crate::{
     output::{room, zeros},
-    work::{GoOn, detached, interruptible_many},
+    work::{GoOn, PARALLEL, detached, interruptible},
 };
-
-/// From so many numbers on, columns are shared out over threads (the size from which `detached` has a pool).
-pub(crate) const PARALLEL: usize = 8192;
 
 /// Columns of one kind; at least one.
 #[derive(Debug, Serialize, Deserialize)]
@@ -114,7 +111,7 @@ pub(crate) fn fit_all<F: Send>(
     let fits: Result<Vec<F>, _> = if size < PARALLEL {
         py.detach(|| (0..count).map(|k| fit(k, &|| ControlFlow::Continue(()))).collect())
     } else {
-        interruptible_many(py, |go_on| {
+        interruptible(py, size, |go_on| {
             let fit = |k| if go_on() == ControlFlow::Break(()) { Err(None) } else { fit(k, go_on) };
             if count == 1 {
                 // On this thread: what a long fit does itself in parallel finds the pool free.

@@ -38,7 +38,7 @@ const VERSION: u8 = 1;
 /// >>> slope = ss.MonotoneQuintic([0, 1, 2], [0, 1, 2]).derivative()
 /// >>> type(slope).__name__, slope(0.5)
 /// ('PiecewisePolynomial', 1.0)
-#[pyclass(module = "shapespline", frozen, subclass)]
+#[pyclass(module = "shapespline", frozen, subclass, weakref)]
 pub(crate) struct PiecewisePolynomial {
     pub(crate) fits: Arc<Fits>,
     pub(crate) layout: Arc<Layout>,

@@ -4,7 +4,9 @@
 //! constructors; [`layout`] brings arrays with an axis to columns and back. [`rows`] are many functions, each with knots
 //! of its own, [`places`] where they are asked, and [`many`] makes them.
 
-use pyo3::{PyClass, prelude::*};
+use pyo3::prelude::*;
+
+use crate::curve::document_call;
 
 mod bezier_like;
 mod calculus;
@@ -35,11 +37,4 @@ pub(crate) fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(bezier_like::bezier_like, module)?)?;
     document_call::<function::PiecewisePolynomial>(module.py())?;
     document_call::<rows::PiecewiseRows>(module.py())
-}
-
-/// Makes calling an object a documented method: pyo3's slot would show `(*args, **kwargs)`.
-fn document_call<C: PyClass>(py: Python<'_>) -> PyResult<()> {
-    let class = py.get_type::<C>();
-    class.setattr("__call__", class.getattr("_call")?)?;
-    class.delattr("_call")
 }

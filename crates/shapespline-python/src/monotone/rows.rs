@@ -38,7 +38,7 @@ use crate::{
 /// >>> f = ss.fit_many_monotone([[0, 1, 2], [0, 2, 4]], [[0, 1, 2], [0, 1, 2]])
 /// >>> f.derivative()(1.0)
 /// array([1. , 0.5])
-#[pyclass(module = "shapespline", frozen, sequence, subclass)]
+#[pyclass(module = "shapespline", frozen, sequence, subclass, weakref)]
 pub(crate) struct PiecewiseRows {
     fits: Arc<Fits>,
 }

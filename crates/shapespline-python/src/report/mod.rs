@@ -41,7 +41,7 @@ const BLOCK: usize = 2048;
 /// [('convexity', 1), ('torsion', 1), ('convexity', 2), ('torsion', 2)]
 /// >>> ss.NuSpline.shape_preserving(points, "uniform").check().ok
 /// True
-#[pyclass(module = "shapespline", frozen)]
+#[pyclass(module = "shapespline", frozen, weakref)]
 pub(crate) struct ShapeReport {
     pub(crate) report: criteria::ShapeReport,
     pub(crate) subject: Subject,

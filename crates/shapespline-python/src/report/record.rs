@@ -31,7 +31,7 @@ use shapespline::criteria::Record;
 /// >>> worst = min(report.violations, key=lambda record: record.margin)
 /// >>> worst.criterion, worst.segment, worst.satisfied
 /// ('torsion', 1, False)
-#[pyclass(module = "shapespline", frozen, get_all, eq, hash)]
+#[pyclass(module = "shapespline", frozen, get_all, eq, hash, weakref)]
 #[derive(Debug, Clone)]
 pub(crate) struct ShapeRecord {
     /// Index of the segment, from 0.
