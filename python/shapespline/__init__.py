@@ -13,6 +13,7 @@ from shapespline import interchange, plot
 from shapespline._core import (
     CatmullRom,
     Diagnostics,
+    Fairness,
     MonotoneDiagnostics,
     MonotoneQuartic,
     MonotoneQuintic,
@@ -36,12 +37,13 @@ from shapespline._errors import ConvergenceError, InputError
 from shapespline._many import Fits, fit_many
 from shapespline._polygon import PolygonShape, polygon_shape
 from shapespline._records import NodeRecord, OscillationRecord, UndecidedRecord
-from shapespline._shape import InflectionCount, check_shape, inflection_count
+from shapespline._shape import InflectionCount, check_shape, fairness, inflection_count
 
 __all__ = [
     "CatmullRom",
     "ConvergenceError",
     "Diagnostics",
+    "Fairness",
     "Fits",
     "InflectionCount",
     "InputError",
@@ -67,6 +69,7 @@ __all__ = [
     "__version__",
     "bezier_like",
     "check_shape",
+    "fairness",
     "fit_many",
     "fit_many_monotone",
     "inflection_count",

@@ -16,11 +16,18 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
-    from shapespline._core import ShapeReport, Tangents, _Boundary, _Criterion, _Parametrization
+    from shapespline._core import (
+        Fairness,
+        ShapeReport,
+        Tangents,
+        _Boundary,
+        _Criterion,
+        _Parametrization,
+    )
 
     Floats = NDArray[np.float64]
 
-__all__ = ["InflectionCount", "check_shape", "inflection_count"]
+__all__ = ["InflectionCount", "check_shape", "fairness", "inflection_count"]
 
 
 def check_shape(
@@ -195,6 +202,55 @@ def _breaks(points: ArrayLike, control: Any, parameters: Any) -> Floats:
             value=shape[2],
         )
     return u
+
+
+def fairness(curve: Any) -> Fairness:
+    """Measure how fair a curve is: bending, variation and extrema of its curvature.
+
+    Parameters
+    ----------
+    curve : SpaceCurve, BSpline, PPoly, BPoly or PiecewiseBezier
+        A curve as for `check_shape`: of this module, of SciPy, or Bézier pieces, rational or not. A
+        function of one variable stands for its graph.
+
+    Returns
+    -------
+    Fairness
+        ``length``, ``bending`` (L∫κ²ds), ``variation`` (L³∫(κ'² + κ²τ²)ds), ``max_curvature`` and
+        where, the number of ``curvature_extrema``, ``max_curvature_jump``; ``cusps`` and
+        ``corners``.
+
+    Raises
+    ------
+    TypeError
+        If the curve is of a wrong kind.
+    ValueError
+        If the curve holds a number that is not finite, or a shape is wrong.
+
+    See Also
+    --------
+    check_shape : does the curve keep the shape of points?
+
+    Notes
+    -----
+    Extrema of curvature are sign changes of a polynomial (for cubics of degree 5 in the plane and 7
+    in space), isolated by Bernstein subdivision with an error bound; nothing is sampled. Cost O(n),
+    on all threads for long curves. Farin & Sapidis, IEEE Comput. Graph. Appl. 9 (1989) 52–57,
+    doi:10.1109/38.19051; Moreton & Séquin, Comput. Graph. 26 (1992) 167–176,
+    doi:10.1145/133994.134035.
+
+    Examples
+    --------
+    A parabola has one extremum of curvature, 2 at its vertex:
+
+    >>> import shapespline as ss
+    >>> parabola = ss.PiecewiseBezier([[[-1, 1], [0, -1], [1, 1]]], [0, 1])
+    >>> found = ss.fairness(parabola)
+    >>> found.max_curvature, found.max_curvature_at, found.curvature_extrema
+    (2.0, 0.5, 1)
+    """
+    measured = curve if isinstance(curve, SpaceCurve) else piecewise(curve)
+    return measured.fairness()
 
 
 class InflectionCount(int):

@@ -14,6 +14,7 @@ mod catmull_rom;
 mod curve;
 mod diagnostics;
 mod error;
+mod fairness;
 mod fit;
 mod input;
 mod many;
@@ -44,6 +45,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<catmull_rom::CatmullRom>()?;
     module.add_class::<tangents::Tangents>()?;
     module.add_class::<piecewise::PiecewiseBezier>()?;
+    module.add_class::<fairness::Fairness>()?;
     module.add_class::<report::ShapeReport>()?;
     module.add_class::<report::ShapeRecord>()?;
     module.add_class::<diagnostics::Diagnostics>()?;
