@@ -130,6 +130,37 @@ def test_tighter_tolerances_are_kept():
     assert not case.preserve().check(coplanarity=0.02).ok
 
 
+def test_violations_that_travel_inwards_need_no_limit_and_few_rounds():
+    """Both ended after 200 rounds, n/8 of which are needed one by one."""
+    zigzag = np.array([[-1.0, 0, -1], [0, -1, -1], [1, 1, 0]])[np.arange(2000) % 3].cumsum(axis=0)
+    i = np.arange(1562)
+    lattice = np.column_stack([i, i % 2, i // 2 % 2])
+    for points, parameters in [(zigzag, "chordal"), (lattice, "uniform")]:
+        curve = ss.NuSpline.shape_preserving(points, parameters)
+        assert curve.check().ok
+        assert curve.diagnostics.iterations < 60
+        with pytest.raises(ss.ConvergenceError, match="raise max_iterations") as caught:
+            ss.NuSpline.shape_preserving(points, parameters, max_iterations=15)
+        diagnostics = caught.value.curve.diagnostics
+        assert (diagnostics.status, diagnostics.iterations) == ("iteration-limit", 15)
+
+
+def test_where_tension_can_rise_no_further_the_search_ends():
+    """Parameters so uneven that no digits are left (limits.md)."""
+    points = np.random.default_rng(0).normal(size=(8, 3)).cumsum(axis=0)
+    parameters = np.cumsum([0, 1, 1e9, 1, 1, 1, 1, 1])
+    for strategy, most, advice in [
+        ("fairest", 250, "widen coplanarity"),
+        ("nussp", 10_100, 'use strategy="fairest"'),
+    ]:
+        with pytest.raises(ss.ConvergenceError, match=advice) as caught:
+            ss.NuSpline.shape_preserving(points, parameters, strategy=strategy)
+        diagnostics = caught.value.curve.diagnostics
+        assert diagnostics.status == "stalled"
+        assert diagnostics.iterations <= most
+        assert not caught.value.report.ok
+
+
 def test_a_million_points():
     """Sampled in overlapping pieces, which a criterion of four points cannot notice."""
     count, piece = 1_000_000, 50_000

@@ -49,7 +49,10 @@ class InputError(ValueError):
 
 
 class ConvergenceError(RuntimeError):
-    """The limit of iterations was reached before the curve kept the shape of its points.
+    """No curve was found that keeps the shape of its points.
+
+    The limit of iterations was reached first, or tension can rise no further where a criterion is
+    violated: ``curve.diagnostics.status`` says which.
 
     Attributes
     ----------

@@ -15,8 +15,9 @@ pub(crate) struct Search {
 /// Attributes
 /// ----------
 /// status : str
-///     ``"solved"``: every criterion holds, by a complete solve and check at the end; or
-///     ``"iteration-limit"`` (the curve carried by a `ConvergenceError`).
+///     ``"solved"``: every criterion holds, by a complete solve and check at the end. Curves that a
+///     `ConvergenceError` carries say ``"iteration-limit"`` (``max_iterations`` was reached) or
+///     ``"stalled"`` (a criterion fails where tension can rise no further).
 /// iterations : int
 ///     Checks of the curve while tension was raised, the last one, which found no fault, included.
 /// solves : int
@@ -35,7 +36,7 @@ pub(crate) struct Search {
 #[pyclass(module = "shapespline", frozen, get_all, eq, hash, weakref)]
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub(crate) struct Diagnostics {
-    /// How the search ended: ``"solved"`` or ``"iteration-limit"``.
+    /// How the search ended: ``"solved"``, ``"iteration-limit"`` or ``"stalled"``.
     status: String,
     /// Checks of the curve while tension was raised, the last one included.
     iterations: usize,
@@ -52,6 +53,7 @@ impl From<&search::Diagnostics> for Diagnostics {
         let status = match d.status {
             Status::Solved => "solved",
             Status::IterationLimit => "iteration-limit",
+            Status::Stalled => "stalled",
             Status::Interrupted => "interrupted",
         };
         Self {

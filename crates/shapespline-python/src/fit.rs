@@ -6,7 +6,7 @@ use pyo3::prelude::*;
 use shapespline::{
     criteria::{self, Criteria, Criterion, Tolerances},
     geometry::{Boundary, DVec3, DataPolygon, Dimension, InputError, Parametrization},
-    search::{Fit, FitError, Outcome, SearchOptions, Status, Strategy},
+    search::{Diagnostics, Fit, FitError, Outcome, SearchOptions, Status, Strategy},
 };
 
 use crate::{
@@ -87,24 +87,29 @@ pub(crate) fn preserve<C: Member>(
 
 /// What the report of a failure must know.
 pub(crate) struct Failure {
-    pub(crate) criteria: Criteria,
-    pub(crate) tolerances: Tolerances,
-    /// What the caller can do.
+    criteria: Criteria,
+    tolerances: Tolerances,
+    /// What the caller can do where tension can rise no further.
     advice: &'static str,
 }
 
 impl From<&SearchOptions> for Failure {
     fn from(options: &SearchOptions) -> Self {
-        let SearchOptions { criteria, tolerances, .. } = *options;
-        Self { criteria, tolerances, advice: "raise max_iterations" }
+        let SearchOptions { criteria, tolerances, strategy, .. } = *options;
+        let advice = match strategy {
+            Strategy::Nussp | Strategy::Reduction => "use strategy=\"fairest\"",
+            Strategy::Growth | Strategy::Fairest => ASK_FOR_LESS,
+        };
+        Self { criteria, tolerances, advice }
     }
 }
 
+const ASK_FOR_LESS: &str = "widen coplanarity or collinearity, or leave out a criterion";
+
 impl Failure {
-    /// Of Catmull–Rom handles, whose search has no limit that the caller sets.
+    /// Of Catmull–Rom handles.
     pub(crate) fn of_handles(criteria: Criteria, tolerances: Tolerances) -> Self {
-        let advice = "widen coplanarity or collinearity, or leave out a criterion";
-        Self { criteria, tolerances, advice }
+        Self { criteria, tolerances, advice: ASK_FOR_LESS }
     }
 }
 
@@ -112,8 +117,8 @@ impl Failure {
 /// just written is dear to move by another.
 pub(crate) struct Made {
     curve: SpaceCurve,
-    /// The iterations of a search that did not end well, and the report on its last curve.
-    unsolved: Option<Box<(usize, criteria::ShapeReport)>>,
+    /// What a search did that did not end well, and the report on its last curve.
+    unsolved: Option<Box<(Diagnostics, criteria::ShapeReport)>>,
 }
 
 impl Made {
@@ -127,7 +132,7 @@ impl Made {
         let Fit { curve, outcome, report } = fit;
         let Outcome { diagnostics, history, .. } = outcome;
         let solved = diagnostics.status == Status::Solved;
-        let unsolved = (!solved).then(|| Box::new((diagnostics.iterations, report)));
+        let unsolved = (!solved).then(|| Box::new((diagnostics, report)));
         let search = Search { diagnostics, history };
         Self { curve: SpaceCurve::of(Arc::new(curve), Some(search)), unsolved }
     }
@@ -141,7 +146,7 @@ impl Made {
         index: Option<usize>,
     ) -> PyResult<Py<PyAny>> {
         let Some(unsolved) = self.unsolved else { return self.curve.into_python(py) };
-        let (iterations, report) = *unsolved;
+        let (Diagnostics { status, iterations, .. }, report) = *unsolved;
         let violations: Vec<String> = Criterion::ALL
             .iter()
             .map(|&criterion| (report.count(criterion).violated, criterion.name()))
@@ -154,7 +159,7 @@ impl Made {
              {} (this exception carries the last curve and its report)",
             report.segments,
             violations.join(", "),
-            failure.advice,
+            if status == Status::IterationLimit { "raise max_iterations" } else { failure.advice },
         );
         let curve: Arc<dyn Curve> = Arc::clone(&self.curve.curve);
         let report = curve.with_locations(report);

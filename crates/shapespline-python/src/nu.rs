@@ -108,8 +108,9 @@ impl NuSpline {
     /// coplanarity, collinearity, tolerance : float
     ///     As for the method ``check``.
     /// max_iterations : int, optional
-    ///     Largest number of checks while tension is raised; default 10000 for ``"nussp"`` and
-    ///     ``"reduction"``, else 200.
+    ///     Largest number of checks while tension is raised; by default there is no limit as long as
+    ///     tension can rise at every segment that violates a criterion. It rises to 1e60 and, by
+    ///     default, to what 10000 raises of a node add up to with ``"nussp"`` and ``"reduction"``.
     ///
     /// Returns
     /// -------
@@ -120,7 +121,8 @@ impl NuSpline {
     /// Raises
     /// ------
     /// ConvergenceError
-    ///     If ``max_iterations`` is reached first; it carries the last curve and its report.
+    ///     If ``max_iterations`` is reached first, or if tension can rise no further where a criterion
+    ///     is violated; it carries the last curve and its report.
     /// ValueError, TypeError
     ///     As for `NuSpline`, and for options outside their ranges.
     /// KeyboardInterrupt

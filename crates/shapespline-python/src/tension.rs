@@ -185,8 +185,9 @@ impl TensionSpline {
     /// coplanarity, collinearity, tolerance : float
     ///     As for the method ``check``.
     /// max_iterations : int, optional
-    ///     Largest number of checks while λ is lowered; default 200, and 10000 for ``"reduction"`` and
-    ///     ``"nussp"``.
+    ///     Largest number of checks while tension is raised; by default there is no limit as long as
+    ///     tension can rise at every segment that violates a criterion. It rises to 1e60 and, by
+    ///     default, to what 10000 raises of a node add up to with ``"nussp"`` and ``"reduction"``.
     ///
     /// Returns
     /// -------
@@ -197,7 +198,8 @@ impl TensionSpline {
     /// Raises
     /// ------
     /// ConvergenceError
-    ///     If ``max_iterations`` is reached first; it carries the last curve and its report.
+    ///     If ``max_iterations`` is reached first, or if tension can rise no further where a criterion
+    ///     is violated; it carries the last curve and its report.
     /// ValueError, TypeError
     ///     As for `TensionSpline`, and for options outside their ranges.
     /// KeyboardInterrupt

@@ -59,8 +59,9 @@ pub struct SearchOptions {
     /// `Δν`: what is added (nussp), or the first tension (growth); positive. For the reduction the
     /// factor `ρ`, below one.
     pub step: f64,
-    /// Largest number of checks of the curve while raising; at least one. `None` takes 10 000 for
-    /// the additive rule and the reduction and 200 for growth, which doubles and cannot need more than f64 has.
+    /// Largest number of checks of the curve while raising; at least one. `None`: no limit for as long as
+    /// every segment that fails has a node at which tension can rise. It rises to 1e60; without a limit
+    /// the papers' rules end where 10 000 raises of a node do, for steps can be as small as you like.
     pub max_iterations: Option<usize>,
 }
 
@@ -108,21 +109,29 @@ impl SearchOptions {
         Ok(Checker::new(polygon, self.criteria, self.tolerances))
     }
 
-    pub(crate) fn limit(&self) -> usize {
-        self.max_iterations.unwrap_or(match self.strategy {
-            Strategy::Nussp | Strategy::Reduction => 10_000,
-            Strategy::Growth | Strategy::Fairest => 200,
-        })
-    }
-
-    /// The next tension of a node that has to be raised.
+    /// The next tension of a node that has to be raised; the same if it can rise no further.
     pub(crate) fn raised(&self, tension: f64) -> f64 {
         let next = match self.strategy {
             Strategy::Nussp => tension + self.step,
             Strategy::Growth | Strategy::Fairest => (2.0 * tension).max(self.step),
             Strategy::Reduction => (1.0 + tension) / self.step - 1.0,
         };
-        // No further than where squares of legs would underflow.
-        next.min(1e60)
+        next.min(self.highest()).max(tension)
+    }
+
+    /// The highest tension that raising leads to.
+    fn highest(&self) -> f64 {
+        /// No further than where squares of legs would underflow.
+        const HIGHEST: f64 = 1e60;
+        /// Raises of a node by the papers' rules after which nothing more is expected of them.
+        const RAISES: f64 = 1e4;
+
+        let added_up = match self.strategy {
+            Strategy::Growth | Strategy::Fairest => HIGHEST,
+            _ if self.max_iterations.is_some() => HIGHEST,
+            Strategy::Nussp => RAISES * self.step,
+            Strategy::Reduction => self.step.powf(-RAISES) - 1.0,
+        };
+        added_up.min(HIGHEST)
     }
 }

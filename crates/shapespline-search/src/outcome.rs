@@ -10,8 +10,10 @@ use shapespline_geometry::DVec3;
 pub enum Status {
     /// Every criterion holds, by a complete solve and check at the end.
     Solved,
-    /// The limit of iterations was reached first.
+    /// The caller's limit of iterations was reached first.
     IterationLimit,
+    /// A segment fails at whose nodes tension can rise no further: it is as large as it can be.
+    Stalled,
     /// The caller's monitor asked to stop.
     Interrupted,
 }

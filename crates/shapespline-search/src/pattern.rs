@@ -1,6 +1,7 @@
 //! Which tensions mend which fault: the increase patterns of paper 001, (5.58)–(5.60).
 
 use shapespline_criteria::Faults;
+use shapespline_geometry::DataPolygon;
 
 /// Nodes around segment `m` whose tension is to be raised, as offsets `−1, 0, 1, 2` from `m`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -49,5 +50,39 @@ impl Pattern {
             ],
             equal: faults.any(Faults::COPLANARITY_SPLIT),
         }
+    }
+
+    /// The offsets from `m` of the nodes to be raised.
+    pub(crate) fn offsets(self) -> impl Iterator<Item = isize> {
+        (-1..).zip(self.raise).filter_map(|(offset, raise)| raise.then_some(offset))
+    }
+
+    /// The nodes to be raised for segment `m`.
+    pub(crate) fn nodes(self, m: usize, polygon: &DataPolygon) -> impl Iterator<Item = usize> {
+        let ring = Ring::of(polygon, polygon.nodes());
+        self.offsets().filter_map(move |offset| ring.moved(m, offset))
+    }
+}
+
+/// The numbers of segments or nodes: of closed data they go round.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Ring {
+    count: usize,
+    closed: bool,
+}
+
+impl Ring {
+    /// That of some count of a polygon's.
+    pub(crate) fn of(polygon: &DataPolygon, count: usize) -> Self {
+        Self { count, closed: polygon.is_closed() }
+    }
+
+    /// The number that is so far from another, if there is one.
+    pub(crate) fn moved(self, from: usize, by: isize) -> Option<usize> {
+        if self.closed {
+            let count = self.count as isize;
+            return Some(((from as isize + by % count + count) % count) as usize);
+        }
+        from.checked_add_signed(by).filter(|&i| i < self.count)
     }
 }

@@ -34,8 +34,9 @@ pub(crate) struct State<'s, F> {
     pub(crate) plain_fails: bool,
     /// Tensions (ascending by node) that are raised but not yet set.
     pub(crate) pending: Vec<(usize, f64)>,
-    /// Scratch: the nodes that are raised, and the legs of a look at other tension.
+    /// Scratch: the nodes that are raised, their tensions before, and the legs of a look at other tension.
     pub(crate) nodes: Vec<usize>,
+    pub(crate) before: Vec<f64>,
     pub(crate) legs: Vec<[DVec3; 2]>,
     history: Vec<Step>,
     pub(crate) iterations: usize,
@@ -65,6 +66,7 @@ impl<'s, F: TensionFamily> State<'s, F> {
             plain_fails,
             pending: Vec::with_capacity(32),
             nodes: Vec::with_capacity(32),
+            before: Vec::with_capacity(32),
             legs: Vec::with_capacity(64),
             history: Vec::with_capacity(16),
             iterations: 1,

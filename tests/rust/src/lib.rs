@@ -4,6 +4,7 @@
 pub mod families;
 pub mod fuzz;
 pub mod generate;
+pub mod regular;
 pub mod segments;
 
 use std::path::Path;

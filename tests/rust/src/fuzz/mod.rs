@@ -12,6 +12,7 @@ mod functions;
 mod inflections;
 mod kernels;
 mod many;
+mod regular;
 mod shape_preserving;
 mod stored;
 
@@ -21,13 +22,14 @@ pub use bytes::Bytes;
 pub type Target = (&'static str, fn(&[u8]));
 
 /// Every target, by the name of its folder in `fuzz/corpus`.
-pub const TARGETS: [Target; 8] = [
+pub const TARGETS: [Target; 9] = [
     ("any_curve", any_curve::run),
     ("curves", curves::run),
     ("functions", functions::run),
     ("inflections", inflections::run),
     ("kernels", kernels::run),
     ("many", many::run),
+    ("regular", regular::run),
     ("shape_preserving", shape_preserving::run),
     ("stored", stored::run),
 ];

@@ -28,20 +28,25 @@ pub(super) fn run(data: &[u8]) {
     let max_iterations = if doubling { None } else { Some(bytes.below(64)) };
     let options = SearchOptions { criteria, tolerances, strategy, step, max_iterations };
     let default = tolerances == Tolerances::default() && criteria == Criteria::ALL && step == 0.5;
-    let solvable = bytes.is_tame() && fits(&polygon) && is_clear(&polygon) && leans(&polygon);
+    let solvable = bytes.is_tame() && is_well_posed(&polygon);
     let must_solve = default && doubling && solvable;
     let continuity = if bytes.flag() { Continuity::C1 } else { Continuity::G1 };
     let safety = if bytes.below(4) == 0 { bytes.unscaled() } else { 0.9 };
     let mut judged = Judged { bytes: &mut bytes, polygon: &polygon, options: &options, must_solve };
     match family {
-        0 => judged.judge(NuSpline::shape_preserving(polygon.clone(), &options)),
-        1 => judged.judge(TensionSpline::shape_preserving(polygon.clone(), &options)),
+        0 => judged.judge(NuSpline::shape_preserving(polygon.clone(), &options), questions),
+        1 => judged.judge(TensionSpline::shape_preserving(polygon.clone(), &options), questions),
         _ => {
             let handles = HandleOptions { criteria, tolerances, safety, continuity };
             judged.must_solve = default && safety == 0.9 && solvable;
-            judged.judge(CatmullRom::shape_preserving(polygon.clone(), &handles));
+            judged.judge(CatmullRom::shape_preserving(polygon.clone(), &handles), questions);
         }
     }
+}
+
+/// Whether a search with default options has to end solved.
+pub(super) fn is_well_posed(polygon: &DataPolygon) -> bool {
+    fits(polygon) && is_clear(polygon) && leans(polygon)
 }
 
 /// Whether velocities are numbers that leave room for squares, and given end tangents of a size that
@@ -90,15 +95,20 @@ fn leans(polygon: &DataPolygon) -> bool {
     (0..nodes).all(at)
 }
 
-struct Judged<'a, 'b> {
-    bytes: &'a mut Bytes<'b>,
-    polygon: &'a DataPolygon,
-    options: &'a SearchOptions,
-    must_solve: bool,
+pub(super) struct Judged<'a, 'b> {
+    pub(super) bytes: &'a mut Bytes<'b>,
+    pub(super) polygon: &'a DataPolygon,
+    pub(super) options: &'a SearchOptions,
+    pub(super) must_solve: bool,
 }
 
 impl Judged<'_, '_> {
-    fn judge<C: Interpolant<Curve: Sized>>(&mut self, made: Result<Fit<C>, FitError>) {
+    /// Judges a fit, and asks its curve some questions.
+    pub(super) fn judge<C: Interpolant<Curve: Sized>>(
+        &mut self,
+        made: Result<Fit<C>, FitError>,
+        ask: impl FnOnce(&dyn Curve, &mut Bytes<'_>),
+    ) {
         let fit = match made {
             Ok(fit) => fit,
             Err(error) => return readable(&error),
@@ -110,7 +120,7 @@ impl Judged<'_, '_> {
             assert_eq!(status, Status::Solved, "{:?}\n{}", self.polygon, fit.report);
         }
         interpolates(&fit.curve, self.polygon);
-        questions(fit.curve.curve(), self.bytes);
+        ask(fit.curve.curve(), self.bytes);
         let again = fit.curve.check(self.options.criteria, self.options.tolerances).unwrap();
         assert_eq!(again.counts, fit.report.counts, "{:?}", self.polygon);
         assert!(fit.curve.tension().iter().all(|&t| t >= 0.0 && t.is_finite()));
