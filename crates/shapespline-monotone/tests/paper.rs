@@ -37,6 +37,32 @@ fn energies_of_optimal_slopes() {
     }
 }
 
+/// Newton's step may end exactly on the boundary of a cone: the next inverse was NaN, and the paper's program
+/// answered in silence. The reported data, their neighbours by an ulp, and random sets.
+#[test]
+fn optimal_slopes_come_from_the_interior_point() {
+    let x: Vec<f64> = (0..6).map(f64::from).collect();
+    let reported = 6.401_530_630_279_101_f64;
+    for middle in [reported.next_down(), reported, reported.next_up()] {
+        let f = quintic(&x, &[5.3, 5.6, 6.1, middle, 6.9, 15.2], Slopes::Optimal);
+        let d = f.diagnostics();
+        assert_eq!((d.solver, d.converged), (Solver::InteriorPoint, true), "{middle}");
+        assert!((108.4..108.9).contains(&f.bending_energy()), "{middle}: {}", f.bending_energy());
+    }
+    let mut rng = Rng::new(23);
+    for case in 0..4000 {
+        let n = 3 + rng.index(12);
+        let (x, y) = monotone(&mut rng, n, (case % 2) as f64, (case % 3) as f64, 0.05);
+        let f = quintic(&x, &y, Slopes::Optimal);
+        let d = f.diagnostics();
+        assert_eq!(
+            (d.solver, d.converged),
+            (Solver::InteriorPoint, true),
+            "case {case}: {x:?} {y:?}"
+        );
+    }
+}
+
 /// The energy the object reports is the integral of its squared second derivative.
 #[test]
 fn bending_energy_is_the_integral() {

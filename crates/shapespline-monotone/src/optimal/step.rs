@@ -166,8 +166,8 @@ impl Problem {
             cone::change(&self.states[j], &self.factors[j], ahead, mu, &mut self.changes[j]);
             most = cone::room(&self.states[j], &self.changes[j], most);
         }
-        // A primal step that may go all the way does, and is feasible from then on.
-        let step = most.map(|m| if m >= 1.0 { 1.0 } else { FRACTION * m });
+        // A step that would end on the boundary, or just inside it, stops short of it: the inverses need the room.
+        let step = most.map(|m| (FRACTION * m).min(1.0));
         (self.sum, self.gap) = (0.0, 0.0);
         for ((state, change), given) in self.states.iter_mut().zip(&self.changes).zip(&self.given) {
             cone::advance(state, change, step);
