@@ -22,6 +22,7 @@ FUNCTION = ss.MonotoneQuintic([0, 1, 2, 4], [0, 1, 1, 3])
 CURVES = {str(case): case.preserve() for case in cases.of_every_family(cases.small())}
 CURVES |= {"function": FUNCTION, "quarter": QUARTER}
 CURVES["cubic of SciPy"] = CubicSpline(np.arange(5.0), PLANAR)
+CURVES["C²"] = cases.helix().fit()
 #: a corner at the middle break
 CURVES["corner"] = ss.PiecewiseBezier([[[0, 0], [1, 1]], [[1, 1], [2, 0]]], [0, 1, 2])
 
@@ -52,17 +53,62 @@ def test_the_b_spline_is_the_curve(name):
     assert len(data.knots) == len(data.control) + data.degree + 1
 
 
-@pytest.mark.parametrize("case", cases.small(), ids=str)
-def test_knots_are_as_many_as_the_smoothness_needs(case):
-    c1 = interchange.bspline(case.preserve())
-    inner = len(case.points) - 2
-    # C¹ in its parameter: double knots, so two control points a point of the data.
-    assert len(c1.control) == 2 * inner + 4
-    handles = ss.CatmullRom.shape_preserving(case.points, case.parameters, continuity="G1")
-    g1 = interchange.bspline(handles)
-    assert len(c1.control) <= len(g1.control) <= 3 * inner + 4
-    corner = interchange.bspline(CURVES["corner"])
-    np.testing.assert_array_equal(corner.knots, [0, 0, 1, 2, 2])
+def multiplicities(data):
+    """Return how often each inner knot is there."""
+    return np.unique(data.knots, return_counts=True)[1][1:-1]
+
+
+def jumps(curve, order):
+    """Return how far a derivative jumps at each inner break, over its largest change elsewhere."""
+    pieces = piecewise(curve)
+    control, widths = pieces.control, np.diff(pieces.breaks)[:, None]
+    legs = np.diff(control, order, axis=1)
+    before, after = legs[:-1, -1] / widths[:-1] ** order, legs[1:, 0] / widths[1:] ** order
+    size = np.abs(legs / widths[:, None] ** order).max()
+    return np.abs(after - before).max(axis=1) / size
+
+
+@pytest.mark.parametrize("case", cases.of_every_family(cases.small()), ids=str)
+@pytest.mark.parametrize("way", ["fit", "preserve"])
+def test_knots_are_as_many_as_the_smoothness_needs(case, way):
+    """Simple where a cubic is C², double where it is C¹, triple at a corner of its parameter."""
+    curve = getattr(case, way)()
+    found = multiplicities(interchange.bspline(curve))
+    c1, c2 = jumps(curve, 1) < 1e-9, jumps(curve, 2) < 1e-9
+    np.testing.assert_array_equal(found, np.where(c1, np.where(c2, 1, 2), 3))
+    if way == "fit" and case.family is not ss.CatmullRom:
+        assert np.all(found == 1), "without tension the cubics are C²"
+
+
+@pytest.mark.parametrize(
+    ("curve", "inner"),
+    [
+        (CURVES["corner"], 1),
+        (CURVES["cubic of SciPy"], 1),
+        (FUNCTION, 3),  # C², of degree 5
+        (ss.MonotoneQuartic([0, 1, 2, 4], [0, 1, 1, 3]), 3),  # C¹, of degree 4
+        (ss.CatmullRom(PLANAR, "uniform"), 2),
+        (ss.TensionSpline(PLANAR, tangent_scale=[1, 0.5, 1, 0.5, 1]), 2),
+    ],
+)
+def test_knots_by_hand(curve, inner):
+    np.testing.assert_array_equal(multiplicities(interchange.bspline(curve)), inner)
+
+
+@pytest.mark.parametrize("ratio", [1e3, 1e8])
+@pytest.mark.parametrize("away", [0.0, 1e6])
+@pytest.mark.parametrize("scale", [1e-100, 1.0, 1e100])
+def test_few_knots_are_still_the_curve(ratio, away, scale, rng):
+    """Uneven spacing, points far from the origin, any scale: to rounding of the control points."""
+    u = np.cumsum(np.where(np.arange(60) % 2, ratio, 1) * rng.uniform(1, 2, 60))
+    points = (rng.normal(size=(60, 3)) + away) * scale
+    for curve in (ss.NuSpline(points, u), ss.NuSpline(points, u, tension=rng.integers(0, 2, 60))):
+        data = interchange.bspline(curve)
+        back = ss.PiecewiseBezier.from_bspline(data.knots, data.control, 3).control
+        size = np.abs(curve.bezier).max(axis=(1, 2))
+        size = np.maximum(size, np.maximum(np.r_[0, size[:-1]], np.r_[size[1:], 0]))
+        assert np.all(np.abs(back - curve.bezier).max(axis=(1, 2)) <= 1e-13 * size)
+        assert len(data.control) <= 2 * len(points)
 
 
 def test_pieces_that_do_not_meet_are_refused():
@@ -183,12 +229,13 @@ def test_step_holds_the_curve_to_the_last_bit(name):
     np.testing.assert_array_equal(found.weights, data.weights)
 
 
-@pytest.mark.parametrize("name", ["helix", "quarter", "plane, closed", "function"])
+@pytest.mark.parametrize("name", ["helix", "quarter", "plane, closed", "function", "C²"])
 @pytest.mark.parametrize("unit", ["mm", "m"])
 def test_open_cascade_reads_the_step_file(name, unit, tmp_path):
     """Only where Open CASCADE is installed (pip install cadquery-ocp-novtk): it is too large."""
     pytest.importorskip("OCP", reason="Open CASCADE (cadquery-ocp-novtk) is not installed")
     from OCP.BRep import BRep_Tool
+    from OCP.GeomAbs import GeomAbs_C2
     from OCP.STEPControl import STEPControl_Reader
     from OCP.TopAbs import TopAbs_EDGE
     from OCP.TopExp import TopExp_Explorer
@@ -203,6 +250,8 @@ def test_open_cascade_reads_the_step_file(name, unit, tmp_path):
     curve = BRep_Tool.Curve_s(TopoDS.Edge(explorer.Current()), 0.0, 1.0)
     explorer.Next()
     assert not explorer.More(), "one edge"
+    if name in ("C²", "function"):
+        assert curve.Continuity().value >= GeomAbs_C2.value
     u, expected = along(CURVES[name])
     assert (curve.FirstParameter(), curve.LastParameter()) == (u[0], u[-1])
     # Open CASCADE works in millimetres.
@@ -217,8 +266,34 @@ def test_names_and_units_of_step():
     assert "SI_UNIT($,.METRE.)" in interchange.step(curve, unit="m")
     with pytest.raises(ValueError, match="unit must be one of 'm', 'mm'"):
         interchange.step(curve, unit="mile")
-    with pytest.raises(ValueError, match="printable ASCII"):
+    with pytest.raises(ss.InputError, match="printable ASCII"):
         interchange.step(curve, name="Gerät")
+
+
+@pytest.mark.parametrize(
+    ("write", "options", "exception", "message"),
+    [
+        ("geomdl_json", {"delta": np.nan}, ss.InputError, r"delta must be in \(0, 1\), got nan"),
+        ("geomdl_json", {"delta": 0}, ss.InputError, r"delta must be in \(0, 1\), got 0"),
+        ("geomdl_json", {"delta": "0.1"}, TypeError, "delta must be a number, got str"),
+        ("svg", {"width": np.nan}, ss.InputError, r"width must be in \(0, inf\), got nan"),
+        ("svg", {"width": -1.0}, ss.InputError, r"width must be in \(0, inf\), got -1"),
+        ("svg", {"width": 10**400}, ss.InputError, r"width must be in \(0, inf\), got inf"),
+        ("svg", {"stroke": "red\0"}, ss.InputError, "stroke must be printable"),
+        ("svg", {"stroke": 5}, TypeError, "stroke must be a string, got int"),
+        ("step", {"name": 5}, TypeError, "name must be a string, got int"),
+        ("step", {"unit": ["mm"]}, TypeError, "unit must be a string, got list"),
+    ],
+)
+def test_options_that_make_no_valid_file_are_refused(write, options, exception, message):
+    with pytest.raises(exception, match=message):
+        getattr(interchange, write)(ss.NuSpline(PLANAR), **options)
+
+
+def test_text_is_escaped_in_svg():
+    stroke = 'url("#a") <b> & c'
+    (path,) = ET.fromstring(interchange.svg(ss.NuSpline(PLANAR), stroke=stroke))
+    assert path.get("stroke") == stroke
 
 
 # From the command line

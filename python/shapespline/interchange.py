@@ -12,16 +12,19 @@ this module, a SciPy ``BSpline``, ``PPoly`` or ``BPoly``, or a `PiecewiseBezier`
 from __future__ import annotations
 
 import json
+import math
+from numbers import Real
 from typing import TYPE_CHECKING, Any, NamedTuple
+from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
+from shapespline._bspline import fewest_knots
 from shapespline._convert import piecewise
+from shapespline._errors import InputError
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
-
-    from shapespline._core import PiecewiseBezier
 
     Floats = NDArray[np.float64]
 
@@ -55,19 +58,25 @@ class BSplineData(NamedTuple):
     weights: Floats | None
 
 
-def _smooth(pieces: PiecewiseBezier) -> NDArray[np.bool_]:
-    """Return at which inner breaks the curve is C¹ to rounding: one knot less is needed there."""
-    control, widths = pieces.control, np.diff(pieces.breaks)
-    if pieces.weights is not None:
-        return np.zeros(len(widths) - 1, dtype=bool)
-    before = (control[:-1, -1] - control[:-1, -2]) / widths[:-1, None]
-    after = (control[1:, 1] - control[1:, 0]) / widths[1:, None]
-    # The control points were rounded as points: how much that is for a derivative.
-    size = np.abs(control).max(axis=(1, 2))
-    size = np.maximum(size[:-1], size[1:]) / np.minimum(widths[:-1], widths[1:])
-    apart: Floats = np.abs(after - before).max(axis=1)
-    smooth: NDArray[np.bool_] = apart <= 16 * np.finfo(float).eps * size
-    return smooth
+def _between(argument: str, value: Any, low: float, high: float) -> float:
+    """Return a number between two others."""
+    if not isinstance(value, Real):
+        raise TypeError(f"{argument} must be a number, got {type(value).__name__}")
+    try:
+        number = float(value)
+    except OverflowError:
+        number = math.inf
+    if not low < number < high:
+        raise InputError(
+            f"{argument} must be in ({low:g}, {high:g}), got {number:g}", argument, value=number
+        )
+    return number
+
+
+def _text(argument: str, value: Any) -> str:
+    if not isinstance(value, str):
+        raise TypeError(f"{argument} must be a string, got {type(value).__name__}")
+    return value
 
 
 def bspline(curve: Any) -> BSplineData:
@@ -82,11 +91,12 @@ def bspline(curve: Any) -> BSplineData:
     Returns
     -------
     BSplineData
-        Inner knots are degree-fold, one less where the curve is C¹ to rounding.
+        Inner knots are degree-fold, one less for each derivative that is continuous to rounding: a
+        C² cubic has simple ones. Those of a rational curve are degree-fold.
 
     Raises
     ------
-    ValueError
+    InputError
         If the pieces do not meet: a B-spline with such knots would join them.
     TypeError
         If it is no curve.
@@ -105,7 +115,7 @@ def bspline(curve: Any) -> BSplineData:
     >>> points = [[0, 0], [1, 1], [2, 0], [3, 1]]
     >>> data = ss.interchange.bspline(ss.NuSpline(points, "uniform"))
     >>> data.degree, data.knots
-    (3, array([0., 0., 0., 0., 1., 1., 2., 2., 3., 3., 3., 3.]))
+    (3, array([0., 0., 0., 0., 1., 2., 3., 3., 3., 3.]))
     >>> from scipy.interpolate import BSpline
     >>> BSpline(data.knots, data.control, data.degree)(1.0).round(12)
     array([1., 1.])
@@ -115,19 +125,20 @@ def bspline(curve: Any) -> BSplineData:
     gaps = np.abs(control[1:, 0] - control[:-1, -1]).max(axis=1, initial=0.0)
     if len(gaps) and gaps.max() > 1e-9 * np.ptp(control, axis=(0, 1)).max():
         i = int(gaps.argmax())
-        raise ValueError(
+        raise InputError(
             f"the pieces must meet, but pieces {i} and {i + 1} are {gaps[i]:.3g} apart at "
-            f"{breaks[i + 1]:g}"
+            f"{breaks[i + 1]:g}",
+            "curve",
+            i + 1,
+            float(gaps[i]),
         )
-    # The end of a piece is the start of the next; where the derivative agrees too, the point lies
-    # between its neighbours in a known ratio and need not be told.
-    smooth = _smooth(pieces) if degree > 1 else np.zeros(len(control) - 1, dtype=bool)
+    if pieces.weights is None:
+        return BSplineData(*fewest_knots(control, breaks), degree, None)
+    # The end of a piece is the start of the next.
     kept = np.ones(control.shape[:2], dtype=bool)
     kept[1:, 0] = False
-    kept[:-1, -1] = ~smooth
-    multiplicity = np.r_[degree + 1, degree - smooth.astype(int), degree + 1]
-    weights = None if pieces.weights is None else pieces.weights[kept]
-    return BSplineData(np.repeat(breaks, multiplicity), control[kept], degree, weights)
+    knots = np.repeat(breaks, np.r_[degree + 1, np.full(len(control) - 1, degree), degree + 1])
+    return BSplineData(knots, control[kept], degree, pieces.weights[kept])
 
 
 def geomdl_json(curve: Any, *, delta: float = 0.01) -> str:
@@ -147,7 +158,9 @@ def geomdl_json(curve: Any, *, delta: float = 0.01) -> str:
 
     Raises
     ------
-    ValueError, TypeError
+    InputError
+        If ``delta`` is out of range, or as for `bspline`.
+    TypeError
         As for `bspline`.
 
     Examples
@@ -158,6 +171,7 @@ def geomdl_json(curve: Any, *, delta: float = 0.01) -> str:
     >>> json.loads(text)["shape"]["data"][0]["control_points"]["points"]
     [[0.0, 0.0], [1.0, 2.0], [2.0, 4.0], [3.0, 6.0]]
     """
+    delta = _between("delta", delta, 0.0, 1.0)
     data = bspline(curve)
     control: dict[str, Any] = {"points": data.control.tolist()}
     if data.weights is not None:
@@ -181,10 +195,11 @@ def _planar(curve: Any) -> Floats:
     """Return the control points of a planar curve of degree 1 to 3."""
     pieces = piecewise(curve)
     if pieces.control.shape[2] != 2:
-        raise ValueError("SVG is for curves in the plane, but the points of curve have 3 columns")
+        text = "SVG is for curves in the plane, but the points of curve have 3 columns"
+        raise InputError(text, "curve", value=3)
     if pieces.weights is not None or pieces.degree > 3:
         what = "rational ones" if pieces.weights is not None else f"degree {pieces.degree}"
-        raise ValueError(f"SVG knows polynomials of degree 1 to 3 only, not {what}")
+        raise InputError(f"SVG knows polynomials of degree 1 to 3 only, not {what}", "curve")
     return pieces.control
 
 
@@ -204,7 +219,7 @@ def svg_path(curve: Any) -> str:
 
     Raises
     ------
-    ValueError
+    InputError
         If the curve is in space, rational, or of a higher degree.
     TypeError
         If it is no curve.
@@ -252,7 +267,9 @@ def svg(curve: Any, *, stroke: str = "#1f5fa8", width: float | None = None) -> s
 
     Raises
     ------
-    ValueError, TypeError
+    InputError
+        If ``width`` is not positive, ``stroke`` not printable, or as for `svg_path`.
+    TypeError
         As for `svg_path`.
 
     Examples
@@ -264,14 +281,18 @@ def svg(curve: Any, *, stroke: str = "#1f5fa8", width: float | None = None) -> s
     corners = _planar(curve).reshape(-1, 2)
     low, high = corners.min(axis=0), corners.max(axis=0)
     extent = float(max(high - low)) or 1.0
-    width = extent / 200 if width is None else width
+    if width is None:
+        width = extent / 200
+    width = _between("width", width, 0.0, math.inf)
+    if not _text("stroke", stroke).isprintable():
+        raise InputError(f"stroke must be printable, got {stroke!r}", "stroke", value=stroke)
     low, high = low - 4 * width, high + 4 * width
     (left, bottom), (across, up) = low.tolist(), (high - low).tolist()
     return (
         f'<svg xmlns="http://www.w3.org/2000/svg" '
         f'viewBox="{left!r} {-bottom - up!r} {across!r} {up!r}">\n'
-        f'<path transform="scale(1,-1)" fill="none" stroke="{stroke}" stroke-width="{width!r}" '
-        f'stroke-linejoin="round" d="{svg_path(curve)}"/>\n</svg>\n'
+        f'<path transform="scale(1,-1)" fill="none" stroke={quoteattr(stroke)} '
+        f'stroke-width="{width!r}" stroke-linejoin="round" d="{svg_path(curve)}"/>\n</svg>\n'
     )
 
 
@@ -345,10 +366,10 @@ def step(curve: Any, *, name: str = "curve", unit: str = "mm") -> str:
 
     Raises
     ------
-    ValueError
+    InputError
         If the unit is unknown, the name not printable ASCII, or as for `bspline`.
     TypeError
-        As for `bspline`.
+        If one of them is no string, or as for `bspline`.
 
     Notes
     -----
@@ -361,10 +382,11 @@ def step(curve: Any, *, name: str = "curve", unit: str = "mm") -> str:
     >>> text.count("CARTESIAN_POINT"), "B_SPLINE_CURVE_WITH_KNOTS" in text
     (4, True)
     """
-    if unit not in _UNITS:
-        raise ValueError(f"unit must be one of {', '.join(map(repr, _UNITS))}; got {unit!r}")
-    if not (name.isascii() and name.isprintable()):
-        raise ValueError(f"name must be printable ASCII, got {name!r}")
+    if _text("unit", unit) not in _UNITS:
+        text = f"unit must be one of {', '.join(map(repr, _UNITS))}; got {unit!r}"
+        raise InputError(text, "unit", value=unit)
+    if not (_text("name", name).isascii() and name.isprintable()):
+        raise InputError(f"name must be printable ASCII, got {name!r}", "name", value=name)
     name = name.replace("\\", "\\\\").replace("'", "''")
     data = bspline(curve)
     control = np.zeros((len(data.control), 3))
