@@ -250,11 +250,15 @@ pub(crate) fn float(argument: &str, object: &Bound<'_, PyAny>) -> PyResult<f64> 
 
 /// An integer of at least `least`.
 pub(crate) fn count(argument: &str, least: usize, object: &Bound<'_, PyAny>) -> PyResult<usize> {
+    let value = integer(argument, object)?;
+    let count = usize::try_from(value).ok().filter(|&n| n >= least);
+    count.ok_or_else(|| must(argument, &[], format_args!("be at least {least}"), value))
+}
+
+/// An integer.
+pub(crate) fn integer(argument: &str, object: &Bound<'_, PyAny>) -> PyResult<i64> {
     match object.extract::<i64>() {
-        Ok(value) => usize::try_from(value)
-            .ok()
-            .filter(|&n| n >= least)
-            .ok_or_else(|| must(argument, &[], format_args!("be at least {least}"), value)),
+        Ok(value) => Ok(value),
         Err(error) if error.is_instance_of::<PyOverflowError>(object.py()) => {
             // Python refuses to write integers of more than 4,300 digits.
             let digits = object.str().map_or_else(|_| String::new(), |text| text.to_string());

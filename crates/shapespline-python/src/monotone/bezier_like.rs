@@ -14,13 +14,11 @@ fn degree(object: &Bound<'_, PyAny>) -> PyResult<usize> {
     count("degree", 0, object)
 }
 
-/// A parameter that every degree has at most one of.
-fn known(name: &str, value: Option<f64>, default: f64) -> PyResult<f64> {
-    let value = value.unwrap_or(default);
-    if value.is_finite() {
-        return Ok(value);
-    }
-    Err(must(name, &[], "be finite", value))
+fn alpha(object: &Bound<'_, PyAny>) -> PyResult<Option<f64>> {
+    if object.is_none() { Ok(None) } else { options::finite("alpha", object).map(Some) }
+}
+fn beta(object: &Bound<'_, PyAny>) -> PyResult<Option<f64>> {
+    if object.is_none() { Ok(None) } else { options::finite("beta", object).map(Some) }
 }
 
 /// Evaluate a cubic, quartic or quintic Bézier-like curve, or a derivative of it.
@@ -79,13 +77,12 @@ pub(crate) fn bezier_like<'py>(
     #[pyo3(from_py_with = degree)] degree: usize,
     control: &Bound<'py, PyAny>,
     t: &Bound<'py, PyAny>,
-    a: f64,
-    b: f64,
-    alpha: Option<f64>,
-    beta: Option<f64>,
+    #[pyo3(from_py_with = options::a)] a: f64,
+    #[pyo3(from_py_with = options::b)] b: f64,
+    #[pyo3(from_py_with = alpha)] alpha: Option<f64>,
+    #[pyo3(from_py_with = beta)] beta: Option<f64>,
     #[pyo3(from_py_with = options::nu)] nu: usize,
 ) -> PyResult<FloatArray<'py>> {
-    let (a, b) = (known("a", Some(a), 3.0)?, known("b", Some(b), 3.0)?);
     let curve = match degree {
         3 if alpha.or(beta).is_some() => {
             let given = if alpha.is_some() { "alpha" } else { "beta" };
@@ -94,7 +91,7 @@ pub(crate) fn bezier_like<'py>(
         }
         3 => BezierLike::Cubic { a, b },
         4 | 5 => {
-            let (alpha, beta) = (known("alpha", alpha, 1.0)?, known("beta", beta, 1.0)?);
+            let (alpha, beta) = (alpha.unwrap_or(1.0), beta.unwrap_or(1.0));
             if degree == 4 {
                 BezierLike::Quartic { a, q: b, alpha, beta }
             } else {

@@ -1,12 +1,16 @@
 //! Options of the monotone schemes by name, and errors with the place in y.
 
-use pyo3::{exceptions::PyTypeError, prelude::*, types::PyBool};
+use pyo3::{
+    exceptions::{PyIndexError, PyOverflowError, PyTypeError},
+    prelude::*,
+    types::PyBool,
+};
 use shapespline::monotone::{Extrapolation, Fairness, MonotoneError, Shape};
 
 use super::layout::Layout;
 use crate::{
     error::{Refused, invalid, joined, must},
-    input::{Numbers, array, count, float, kind, numbers, text},
+    input::{Numbers, array, count, float, integer, kind, numbers, text},
     options::{choose, unknown},
 };
 
@@ -128,7 +132,7 @@ pub(crate) fn integrals(object: &Bound<'_, PyAny>) -> PyResult<usize> {
     }
 }
 
-fn finite(argument: &str, object: &Bound<'_, PyAny>) -> PyResult<f64> {
+pub(crate) fn finite(argument: &str, object: &Bound<'_, PyAny>) -> PyResult<f64> {
     let value = float(argument, object)?;
     if value.is_finite() {
         return Ok(value);
@@ -145,7 +149,15 @@ pub(crate) fn y(object: &Bound<'_, PyAny>) -> PyResult<f64> {
     finite("y", object)
 }
 pub(crate) fn axis(object: &Bound<'_, PyAny>) -> PyResult<isize> {
-    object
-        .extract::<isize>()
-        .map_err(|_| PyTypeError::new_err(format!("axis must be an integer, got {}", kind(object))))
+    integer("axis", object).map(|axis| axis as isize)
+}
+
+/// The index of a row, which is beyond all of them where 64 bits do not hold it.
+pub(crate) fn row(object: &Bound<'_, PyAny>) -> PyResult<isize> {
+    object.extract::<isize>().map_err(|error| {
+        if error.is_instance_of::<PyOverflowError>(object.py()) {
+            return PyIndexError::new_err("row out of range");
+        }
+        PyTypeError::new_err(format!("row must be an integer, got {}", kind(object)))
+    })
 }

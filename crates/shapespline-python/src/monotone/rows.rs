@@ -244,7 +244,11 @@ impl PiecewiseRows {
         self.fits.len()
     }
 
-    fn __getitem__(&self, py: Python<'_>, row: isize) -> PyResult<Py<PyAny>> {
+    fn __getitem__(
+        &self,
+        py: Python<'_>,
+        #[pyo3(from_py_with = options::row)] row: isize,
+    ) -> PyResult<Py<PyAny>> {
         let rows = self.fits.len();
         let k = if row < 0 { row.checked_add_unsigned(rows) } else { Some(row) };
         match k.and_then(|k| usize::try_from(k).ok()).filter(|k| *k < rows) {
