@@ -9,6 +9,7 @@ from __future__ import annotations
 import json
 import re
 from dataclasses import dataclass
+from itertools import chain
 from typing import TYPE_CHECKING, Any, NoReturn
 
 import numpy as np
@@ -25,7 +26,8 @@ from shapespline._core import (
     Tangents,
     TensionSpline,
 )
-from shapespline._tables import FileError, text_of
+from shapespline._errors import InputError
+from shapespline._io import FileError, shortened, text_of, write
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -37,6 +39,7 @@ if TYPE_CHECKING:
 __all__ = ["CurveFile", "read_curve", "write_curve"]
 
 FORMAT = "shapespline-curve"
+VERSION = 1
 #: Names of the families, as the command line has them.
 METHODS: dict[type, str] = {
     NuSpline: "nu",
@@ -62,6 +65,11 @@ class CurveFile:
     shape: str
 
 
+def _integer(digits: str) -> int | float:
+    # Python refuses to read integers of more than 4,300 digits; to every entry here they are large.
+    return int(digits) if len(digits) < 20 else float(digits)
+
+
 class _Document:
     """The object of a curve file: its entries, and the lines they stand on."""
 
@@ -69,7 +77,7 @@ class _Document:
         self.path = path
         self.text = text_of(path)
         try:
-            entries = json.loads(self.text)
+            entries = json.loads(self.text, parse_int=_integer, object_pairs_hook=self._unique)
         except json.JSONDecodeError as error:
             raise FileError(path, f"is not JSON: {error.msg}", error.lineno) from None
         except RecursionError:
@@ -77,6 +85,14 @@ class _Document:
         if not isinstance(entries, dict):
             raise FileError(path, "must hold one JSON object, the curve")
         self.entries: dict[str, Any] = entries
+
+    def _unique(self, pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+        entries: dict[str, Any] = {}
+        for name, entry in pairs:
+            if name in entries:
+                self.fail(f"holds two entries '{shortened(name)}'")
+            entries[name] = entry
+        return entries
 
     def line(self, key: str) -> int | None:
         found = re.search(rf'"{re.escape(key)}"\s*:', self.text)
@@ -89,16 +105,42 @@ class _Document:
         """Return an entry that has to be there as an array of floats."""
         if key not in self.entries:
             self.fail(f"has no entry '{key}', which a curve of this type needs")
+        return self.numbers(self.entries[key], key)
+
+    def numbers(self, given: Any, key: str) -> Floats:
+        """Return something of an entry as an array of floats."""
         try:
-            array = np.asarray(self.entries[key])
+            array = np.asarray(given)
         except ValueError:
             self.fail(f"'{key}' must be an array: its rows have different lengths", key)
-        if array.dtype.kind not in "iuf":
+        # Among numbers NumPy takes true and false for 1 and 0.
+        if array.dtype.kind not in "iuf" or _holds_truth(given, array.ndim):
             self.fail(f"'{key}' must hold numbers only", key)
         return array.astype(float)
 
     def optional(self, key: str) -> Floats | None:
         return None if self.entries.get(key) is None else self.array(key)
+
+    def check_format(self) -> None:
+        """Refuse files that say they are of another format or version."""
+        given = self.entries.get("format", FORMAT)
+        if given != FORMAT:
+            self.fail(f"'format' must be '{FORMAT}', got {_shown(given)}", "format")
+        version = self.entries.get("version", VERSION)
+        if type(version) is not int or version != VERSION:
+            self.fail(f"'version' must be {VERSION}, got {_shown(version)}", "version")
+
+
+def _shown(given: Any) -> str:
+    return shortened(repr(given))
+
+
+def _holds_truth(given: Any, depth: int) -> bool:
+    """Whether true or false is among the numbers of nested lists."""
+    flat = [given]
+    for _ in range(depth):
+        flat = list(chain.from_iterable(flat))
+    return any(type(item) is bool for item in flat)
 
 
 def _type(document: _Document) -> str:
@@ -108,7 +150,7 @@ def _type(document: _Document) -> str:
             return "bspline"
         return "power" if "coefficients" in document.entries else "bezier"
     if given not in ("bezier", "bspline", "power"):
-        document.fail(f"'type' must be 'bezier', 'bspline' or 'power', got {given!r}", "type")
+        document.fail(f"'type' must be 'bezier', 'bspline' or 'power', got {_shown(given)}", "type")
     return str(given)
 
 
@@ -122,14 +164,15 @@ def _boundary(document: _Document) -> Any:
     if set(given) != {"start", "end"}:
         document.fail("'boundary' must be a name or hold 'start' and 'end'", "boundary")
     try:
-        return Tangents(given["start"], given["end"])
-    except (ValueError, TypeError) as error:
+        return Tangents(*(document.numbers(given[end], "boundary") for end in ("start", "end")))
+    except InputError as error:
         document.fail(f"'boundary': {error}", "boundary")
 
 
 def read_curve(path: Path) -> CurveFile:
     """Read a curve from JSON: Bézier pieces, a B-spline or a piecewise polynomial in powers."""
     document = _Document(path)
+    document.check_format()
     kind = _type(document)
     parameters = document.optional("parameters")
     weights = document.optional("weights")
@@ -149,13 +192,12 @@ def read_curve(path: Path) -> CurveFile:
             key = "breaks" if "breaks" in document.entries else "parameters"
             control, breaks = document.array("control"), document.array(key)
             curve = PiecewiseBezier(control, breaks, weights=weights)
-    except ValueError as error:
-        # The message begins with the name of the argument, which is the name of the entry.
-        named = re.match(r"\w+", str(error))
-        document.fail(str(error), named.group() if named else None)
+    except InputError as error:
+        # The name of the argument is the name of the entry.
+        document.fail(str(error), error.argument)
     shape = document.entries.get("shape", "polygon")
     if shape not in ("polygon", "monotone"):
-        document.fail(f"'shape' must be 'polygon' or 'monotone', got {shape!r}", "shape")
+        document.fail(f"'shape' must be 'polygon' or 'monotone', got {_shown(shape)}", "shape")
     return CurveFile(path, curve, parameters, _boundary(document), shape)
 
 
@@ -165,7 +207,7 @@ def write_curve(path: Path, curve: Any) -> None:
     A function is written as its graph, and that it is to be monotone where its data are.
     """
     pieces = piecewise(curve)
-    entries: dict[str, Any] = {"format": FORMAT, "version": 1, "type": "bezier"}
+    entries: dict[str, Any] = {"format": FORMAT, "version": VERSION, "type": "bezier"}
     if isinstance(curve, SpaceCurve):
         entries["method"] = METHODS.get(type(curve), type(curve).__name__)
         entries["parameters"] = curve.parameters.tolist()
@@ -185,7 +227,4 @@ def write_curve(path: Path, curve: Any) -> None:
         entries["weights"] = pieces.weights.tolist()
     # One entry a line: readable, and errors can name the line.
     body = ",\n".join(f"  {json.dumps(key)}: {json.dumps(value)}" for key, value in entries.items())
-    try:
-        path.write_text("{\n" + body + "\n}\n", encoding="utf-8")
-    except OSError as error:
-        raise FileError(path, f"cannot be written: {error.strerror or error}") from None
+    write(path, "{\n" + body + "\n}\n")

@@ -6,12 +6,28 @@ The format is described in python/docs/files.md. Everything that is wrong with a
 
 from __future__ import annotations
 
+import csv
+import io
 import math
-import re
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from dataclasses import dataclass, field
+from itertools import chain
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+
+from shapespline._cells import (
+    SEPARATORS,
+    Lines,
+    is_data,
+    name_and_unit,
+    number,
+    plain,
+    read_lines,
+    records,
+    split,
+    value,
+)
+from shapespline._io import FileError, shortened, text_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -20,37 +36,28 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     Floats = NDArray[np.float64]
+    #: Which columns to take, by the names of all, if any, the first row, and the line of these.
+    Choose = Callable[[list[str] | None, list[str], int], list[int]]
 
-__all__ = ["FileError", "Points", "read_function", "read_points", "text_of", "write_table"]
+__all__ = ["Points", "read_function", "read_points", "write_table"]
 
 #: Names of the column of parameters, in any case.
-PARAMETER = ("u", "t")
+PARAMETER = ("u", "t", "time")
 AXES = ("x", "y", "z")
+#: Names of angles on the globe: lengths do not go with them.
+ANGLES = {"lon", "lat", "long", "lng", "longitude", "latitude"}
+ANGULAR = {"deg", "rad"}
 #: What may stand in a line of units below the header, in any case, besides what is in brackets.
 UNITS = {
     "", "-", "1", "%", "°", "deg", "rad", "m", "mm", "cm", "km", "µm", "um", "nm", "å", "in", "ft",
     "mi", "px", "pt", "s", "ms", "min", "h", "d", "a", "y", "yr", "hz", "v", "k", "°c", "pa",
     "bar", "n", "kg", "g", "w", "years", "seconds", "metres", "meters",
 }  # fmt: skip
-
-
-class FileError(Exception):
-    """A file cannot be used; the message is one line."""
-
-    def __init__(self, path: Path, what: str, line: int | None = None) -> None:
-        where = f"{path}, line {line}" if line else str(path)
-        super().__init__(f"{where}: {what}")
-
-
-def text_of(path: Path) -> str:
-    """Return the text of a file, without a byte order mark."""
-    try:
-        return path.read_text(encoding="utf-8-sig")
-    except OSError as error:
-        raise FileError(path, f"cannot be read: {error.strerror or error}") from None
-    except UnicodeDecodeError as error:
-        line = error.object[: error.start].count(b"\n") + 1
-        raise FileError(path, "is not text in UTF-8", line) from None
+#: Other spellings; the third μ is Greek.
+SPELLINGS = {
+    "metres": "m", "meters": "m", "um": "µm", "μm": "µm", "°": "deg", "degrees": "deg",
+    "-": "", "1": "",
+}  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -63,175 +70,254 @@ class Points:
     lines: list[int]
     #: Names of the columns of ``points``, with their units as the file has them.
     names: list[str]
+    #: What the user should know of how the file was read: one line each.
+    notes: list[str] = field(default_factory=list)
 
-    def locate(self, message: str, names: Sequence[str] = ("points", "parameters")) -> int | None:
-        """Return the line of the row that a message names by the index of one of the arguments."""
-        if self.parameters is None:
-            names = [name for name in names if name != "parameters"]
-        found = re.search(rf"\b(?:{'|'.join(names)})\[(\d+)", message)
-        if found is None or int(found.group(1)) >= len(self.lines):
-            return None
-        return self.lines[int(found.group(1))]
+    def line(self, index: Any) -> int | None:
+        """Return the line of the point with this index, if there is one."""
+        inside = isinstance(index, int) and index < len(self.lines)
+        return self.lines[index] if inside else None
 
 
-# Lines and cells
+def unit_of(name: str) -> str:
+    """Return the unit in a column's name, in the spelling that STEP has; empty if none is known."""
+    unit = name_and_unit(name)[1]
+    return SPELLINGS.get(unit, unit) if unit in UNITS or unit in SPELLINGS else ""
 
 
-def _number(cell: str) -> float | None:
-    try:
-        return float(cell)
-    except ValueError:
-        return None
-
-
-def _separator(line: str) -> str | None:
-    """Return what separates the cells of a line; ``None`` for blanks."""
-    return next((s for s in ("\t", ";", ",") if s in line), None)
-
-
-def _cells(line: str, separator: str | None) -> list[str]:
-    if separator is None:
-        # "x [mm] y [mm]": the unit belongs to the name before it.
-        line = re.sub(r"(?<=[^\s\])])\s+(?=[\[(])", "", line)
-    cells = [cell.strip().strip("\"'").strip() for cell in line.split(separator)]
-    if separator in (";", "\t"):
-        # A decimal comma, as spreadsheets write it in many languages.
-        cells = [re.sub(r"^([-+]?\d*),(\d+(?:[eE][-+]?\d+)?)$", r"\1.\2", cell) for cell in cells]
-    return cells
-
-
-def _bare(name: str) -> str:
-    """Return a column's name in small letters, without its unit: 'X [mm]', 'x (mm)', 'x/mm'."""
-    return re.sub(r"\s*(\[.*\]|\(.*\)|/.*)$", "", name).strip().lower()
+# Headers
 
 
 def _are_units(cells: list[str]) -> bool:
     """Whether a line below the header holds units, and no numbers."""
-    return any(_number(cell) is None for cell in cells) and all(
-        cell.lower() in UNITS or re.fullmatch(r"\[.*\]|\(.*\)", cell) for cell in cells
+    return any(number(cell) is None for cell in cells) and all(
+        cell.lower() in UNITS or (cell[:1], cell[-1:]) in {("[", "]"), ("(", ")")} for cell in cells
     )
 
 
-@dataclass(frozen=True)
+def _with_units(names: list[str], units: list[str]) -> list[str]:
+    bare = [unit.strip("[]()") for unit in units]
+    return [f"{name} [{unit}]" if unit else name for name, unit in zip(names, bare, strict=True)]
+
+
+def _bare(names: list[str]) -> list[str]:
+    return [name_and_unit(name)[0] for name in names]
+
+
+@dataclass
 class _Table:
-    """The columns that were asked for."""
+    """A table while it is read: its rows, and what stands before the first of them."""
 
-    names: list[str]
-    values: Floats
-    lines: list[int]
+    path: Path
+    lines: Lines
+    #: Rows before the first of numbers: titles, the header, units.
+    preamble: list[tuple[int, list[str]]]
+    #: The first row of numbers, and its line.
+    first: list[str]
+    at: int
+
+    def number(self, cell: str, name: str, line: int) -> float:
+        """Return the number in a cell, or raise."""
+        found = value(cell, self.lines.separator)
+        if found is None or not math.isfinite(found):
+            what = "is not a number" if found is None else "is not finite"
+            where = f"'{shortened(cell)}' in column {shortened(name)}"
+            raise FileError(self.path, f"{where} {what}", line)
+        return found
+
+    def header(self, asked: Sequence[str] | None) -> tuple[list[str] | None, int]:
+        """Return the names of the columns, if there are any, and their line.
+
+        Below a header the first row is what follows it, numbers or not.
+        """
+        n = len(self.first)
+        rows = self._preamble(n)
+        exact = [k for k, (_, cells) in enumerate(rows) if len(cells) == n]
+        named = [k for k in exact if {"x", "y"} <= set(_bare(rows[k][1]))]
+        start = (named or exact or [len(rows)])[0]
+        for at, cells in rows[:start]:
+            # A title: one cell, or words.
+            separated = self.lines.separator is not None and len(cells) > 1
+            numbers = any(number(cell) is not None for cell in cells)
+            last = at == self.preamble[-1][0]
+            if (separated and (numbers or last)) or {"x", "y"} <= set(_bare(cells)):
+                raise FileError(self.path, f"{len(cells)} columns expected, got {n}", self.at)
+        if not exact:
+            return self._commented(asked)
+        at, names = rows[start]
+        below = rows[start + 1 :]
+        if below and len(below[0][1]) == n and _are_units(below[0][1]):
+            names = _with_units(names, below.pop(0)[1])
+        if below:
+            self.at, self.first = below[0]
+        return names, at
+
+    def _preamble(self, n: int) -> list[tuple[int, list[str]]]:
+        """Return what is above the numbers, where its lines may separate cells in another way."""
+        if all(len(cells) == n for _, cells in self.preamble):
+            return self.preamble
+        texts = {at: text for at, text, _ in self.lines.content if at < self.at}
+        rows = []
+        for at, cells in self.preamble:
+            others = (split(texts[at], separator) for separator in SEPARATORS)
+            fitting = next((other for other in others if len(other) == n), cells)
+            rows.append((at, cells if len(cells) == n else fitting))
+        return rows
+
+    def _commented(self, asked: Sequence[str] | None) -> tuple[list[str] | None, int]:
+        """Return the names in a comment above the numbers, if it names what is needed."""
+        needed = {"x", "y"} if asked is None else set(_bare(list(asked)))
+        for at, text in reversed([c for c in self.lines.comments if c[0] < self.at]):
+            for separator in SEPARATORS:
+                names = split(text, separator)
+                if len(names) == len(self.first) and needed <= set(_bare(names)):
+                    return names, at
+        return None, self.at
 
 
-def _read(path: Path, choose: Callable[[list[str] | None, int, int], list[int]]) -> _Table:
-    """Read some columns of a table; ``choose`` gets the names, their number and the line."""
-    rows: list[list[float]] = []
+def _open(path: Path) -> _Table:
+    """Find the first row of numbers."""
+    lines = read_lines(text_of(path))
+    preamble: list[tuple[int, list[str]]] = []
+    for at, _, cells in records(path, lines):
+        if is_data(cells, lines.separator):
+            return _Table(path, lines, preamble, cells, at)
+        preamble.append((at, cells))
+    # No such row: what comes closest has to say what is wrong with it.
+    for k, (at, cells) in enumerate(preamble):
+        below_header = k and len(cells) == len(preamble[0][1]) and not _are_units(cells)
+        if below_header or any(number(cell) is not None for cell in cells):
+            return _Table(path, lines, preamble[:k], cells, at)
+    raise FileError(path, "holds no points")
+
+
+def _read(path: Path, asked: Sequence[str] | None, choose: Choose) -> Points:
+    """Read the columns that ``choose`` names by their numbers, given their names, if any."""
+    table = _open(path)
+    header, at = table.header(asked)
+    columns = choose(header, table.first, at)
+    names = header or [f"{i + 1}" for i in range(len(table.first))]
+    rows: list[list[float | None]] = []
     lines: list[int] = []
-    columns: list[int] | None = None
-    names: list[str] = []
-    separator: str | None = None
-    units_may_follow = False
-    for number, raw in enumerate(text_of(path).splitlines(), start=1):
-        line = raw.strip()
-        if not line or line[0] in "#%":
-            continue
-        if columns is None:
-            separator = _separator(line)
-            cells = _cells(line, separator)
-            if all(_number(cell) is None for cell in cells):
-                names, columns = cells, choose(cells, len(cells), number)
-                units_may_follow = True
-                continue
-            names = [f"{i + 1}" for i in range(len(cells))]
-            columns = choose(None, len(cells), number)
-        cells = _cells(line, separator)
+    gaps: list[int] = []
+    below = (row for row in records(path, table.lines) if row[0] >= table.at)
+    for line, after_blank, cells in below:
         if len(cells) != len(names):
-            raise FileError(path, f"{len(names)} columns expected, got {len(cells)}", number)
-        if units_may_follow and _are_units(cells):
-            names = [
-                f"{name} [{unit.strip('[]()')}]" if unit.strip("[]()") else name
-                for name, unit in zip(names, cells, strict=True)
-            ]
-            units_may_follow = False
-            continue
-        units_may_follow = False
-        row = []
-        for column in columns:
-            value = _number(cells[column])
-            if value is None or not math.isfinite(value):
-                what = "is not a number" if value is None else "is not finite"
-                raise FileError(path, f"'{cells[column]}' in column {names[column]} {what}", number)
-            row.append(value)
+            raise FileError(path, f"{len(names)} columns expected, got {len(cells)}", line)
+        if after_blank and rows:
+            gaps.append(line - 1)
+        row = [plain(cells[c]) for c in columns]
+        if None in row or not math.isfinite(sum(row)):  # type: ignore[arg-type]
+            row = [table.number(cells[c], names[c], line) for c in columns]
         rows.append(row)
-        lines.append(number)
-    if not rows or columns is None:
-        raise FileError(path, "holds no points")
-    return _Table([names[c] for c in columns], np.array(rows), lines)
+        lines.append(line)
+    notes = []
+    if gaps:
+        blocks = f"{len(gaps) + 1} blocks of points are taken as one"
+        notes.append(f"line {gaps[0]}: empty lines between points are ignored: {blocks}")
+    return Points(path, np.array(rows), None, lines, [names[c] for c in columns], notes)
 
 
 # Which columns
 
 
 def _asked(
-    path: Path, names: list[str] | None, count: int, line: int, asked: Sequence[str]
+    path: Path, header: list[str] | None, count: int, line: int, asked: Sequence[str]
 ) -> list[int]:
     """Return the columns that the user asked for, by name or by number from 1."""
-    bare = [_bare(name) for name in names or []]
+    bare = _bare(header or [])
     found = []
     for name in asked:
-        if _bare(name) in bare:
-            found.append(bare.index(_bare(name)))
-        elif name.isdigit() and 1 <= int(name) <= count:
+        (wanted,) = _bare([name])
+        if wanted in bare:
+            found.append(bare.index(wanted))
+        elif name.isascii() and name.isdigit() and len(name) < 9 and 1 <= int(name) <= count:
             found.append(int(name) - 1)
         else:
-            there = f"named {', '.join(names)}" if names else f"numbered 1 to {count}"
-            raise FileError(path, f"there is no column '{name}'; columns are {there}", line)
+            there = f"named {', '.join(header)}" if header else f"numbered 1 to {count}"
+            what = f"there is no column '{shortened(name)}'; columns are {there}"
+            raise FileError(path, what, line)
     return found
 
 
-def _axes(path: Path, names: list[str], line: int) -> list[int]:
-    """Return which columns to take by their header: x, y and z, then the parameter, if any."""
-    bare = [_bare(name) for name in names]
+def _axes(path: Path, header: list[str], line: int) -> tuple[list[int], int | None]:
+    """Return which columns are coordinates by their header, and which holds parameters."""
+    bare = _bare(header)
     for name in (*PARAMETER, *AXES):
         if bare.count(name) > 1:
-            raise FileError(path, f"two columns are called '{name}'", line)
+            raise FileError(path, f"two columns are called '{name}'; choose with --columns", line)
+    parameter = next((bare.index(name) for name in PARAMETER if name in bare), None)
     axes = [bare.index(axis) for axis in AXES if axis in bare]
     if {"x", "y"} <= set(bare):
-        return axes + [bare.index(name) for name in PARAMETER if name in bare][:1]
-    if not axes and len(names) in (2, 3):
-        return list(range(len(names)))
-    named = ", ".join(f"'{name}'" for name in names)
+        return axes, parameter
+    if not axes and len(header) in (2, 3):
+        others = [i for i in range(len(header)) if i != parameter]
+        # u, v, w are coordinates; times are not.
+        if len(others) == 2 and bare[parameter or 0] in ("t", "time"):
+            return others, parameter
+        return list(range(len(header))), None
+    named = ", ".join(f"'{shortened(name)}'" for name in header)
     raise FileError(
-        path, f"the header must name columns x, y and perhaps z and u; got {named}", line
+        path,
+        "the header must name columns x, y and perhaps z and u, or choose others with --columns; "
+        f"got {named}",
+        line,
     )
+
+
+def _refuse_mixed_units(path: Path, names: list[str], line: int) -> None:
+    """Raise where coordinates have different units: the shape of such points means nothing."""
+    units = [unit_of(name) for name in names]
+    given = sorted({unit for unit in units if unit})
+    angular = [
+        u in ANGULAR or (not u and b in ANGLES) for u, b in zip(units, _bare(names), strict=True)
+    ]
+    if len(given) > 1 or (any(angular) and not all(angular)):
+        listed = ", ".join(shortened(name) for name in names)
+        what = "degrees and lengths" if any(angular) else " and ".join(given)
+        raise FileError(path, f"columns {listed} mix {what}; convert them to one unit first", line)
 
 
 def read_points(path: Path, columns: Sequence[str] | None = None) -> Points:
     """Read points, one a line, with or without a header.
 
-    Cells are separated by tabs, semicolons, commas or blanks; empty lines and lines that begin with
-    ``#`` or ``%`` are left out, and a line of units below the header is understood. With a header,
-    the columns x, y and perhaps z are the points, u (or t) their parameters, and others are
-    ignored; without, there are two or three columns. ``columns`` names two or three others.
+    Cells are separated by tabs, semicolons, commas or blanks; empty lines, titles and comments are
+    left out, and a line of units below the header is understood. With a header, the columns x, y
+    and perhaps z are the points, u (or t, or time) their parameters, and others are ignored;
+    without, there are two or three columns. ``columns`` names two or three others.
     """
+    notes: list[str] = []
     with_parameters = False
 
-    def choose(names: list[str] | None, count: int, line: int) -> list[int]:
+    def choose(header: list[str] | None, first: list[str], line: int) -> list[int]:
         nonlocal with_parameters
+        parameter = None
         if columns is not None:
-            return _asked(path, names, count, line, columns)
-        if names is None:
+            found = _asked(path, header, len(first), line, columns)
+        elif header is None:
+            count = max((i + 1 for i, cell in enumerate(first) if cell), default=0)
             if count not in (2, 3):
                 what = f"points have 2 or 3 coordinates, got {count} columns without a header"
-                raise FileError(path, what, line)
-            return list(range(count))
-        found = _axes(path, names, line)
-        with_parameters = _bare(names[found[-1]]) in PARAMETER and len(found) > 2
-        return found
+                raise FileError(path, f"{what}; choose with --columns, as in --columns 1,2", line)
+            found = list(range(count))
+        else:
+            found, parameter = _axes(path, header, line)
+        if header is not None:
+            _refuse_mixed_units(path, [header[i] for i in found], line)
+        if parameter is None or header is None:
+            return found
+        if _bare(header)[parameter] == "time" and number(first[parameter]) is None:
+            cell = shortened(first[parameter])
+            notes.append(f"column time holds '{cell}', no number: it is not used as parameters")
+            return found
+        with_parameters = True
+        return [*found, parameter]
 
-    table = _read(path, choose)
-    points, parameters, names = table.values, None, table.names
+    read = _read(path, columns, choose)
+    points, parameters, names = read.points, None, read.names
     if with_parameters:
         points, parameters, names = points[:, :-1], points[:, -1], names[:-1]
-    return Points(path, points, parameters, table.lines, names)
+    return Points(path, points, parameters, read.lines, names, notes + read.notes)
 
 
 def read_function(path: Path, columns: Sequence[str] | None = None) -> Points:
@@ -240,23 +326,23 @@ def read_function(path: Path, columns: Sequence[str] | None = None) -> Points:
     With a header that has columns x and y, those are taken wherever they stand.
     """
 
-    def choose(names: list[str] | None, count: int, line: int) -> list[int]:
+    def choose(header: list[str] | None, first: list[str], line: int) -> list[int]:
         if columns is not None:
-            return _asked(path, names, count, line, columns)
-        bare = [_bare(name) for name in names or []]
+            return _asked(path, header, len(first), line, columns)
+        bare = _bare(header or [])
         if {"x", "y"} <= set(bare):
             return [bare.index("x"), bare.index("y")]
-        if count != 2:
-            what = f"a function has two columns, got {count}; choose two with --columns"
+        if len(first) != 2:
+            what = f"a function has two columns, got {len(first)}; choose two with --columns"
             raise FileError(path, what, line)
         return [0, 1]
 
-    table = _read(path, choose)
-    return Points(path, table.values, None, table.lines, table.names)
+    return _read(path, columns, choose)
 
 
 def write_table(names: Sequence[str], values: Floats, separator: str = ",") -> str:
     """Return a table as text: a header, then numbers that read back to the last bit."""
-    lines = [separator.join(names)]
-    lines += [separator.join(map(repr, row)) for row in values.tolist()]
-    return "\n".join(lines) + "\n"
+    header = io.StringIO()
+    csv.writer(header, delimiter=separator, lineterminator="").writerow(names)
+    rows = (separator.join(map(repr, row)) for row in values.tolist())
+    return "\n".join(chain([header.getvalue()], rows)) + "\n"

@@ -1,36 +1,49 @@
 """The command ``shapespline``.
 
 One function a command, each with a parser of its own: a new command is one more `_add_…`.
-Exit status: 0 when done, 1 when the shape does not hold, 2 for bad input (one line on stderr).
+Exit status: 0 when done, 1 when the shape does not hold, 2 for bad input (one line on stderr), and
+70 for a fault of the program itself.
 """
 
 from __future__ import annotations
 
-import argparse
 import json
 import os
-import re
 import sys
+import traceback
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import shapespline
 from shapespline import _fit
 from shapespline._files import read_curve
-from shapespline._fit import InputError
+from shapespline._io import (
+    STREAM,
+    FileError,
+    UsageError,
+    name_of,
+    refuse_overwriting,
+    shortened,
+    write,
+)
 from shapespline._monotone_check import check_monotone
+from shapespline._options import BOUNDARIES, Parser, add_fit_options, add_points, names, real
 from shapespline._progress import progress
-from shapespline._tables import FileError, read_function, read_points
+from shapespline._tables import read_function, read_points
 
 if TYPE_CHECKING:
+    import argparse
     from collections.abc import Sequence
+
+    from shapespline._files import CurveFile
+    from shapespline._tables import Points
 
 
 def _demo(options: argparse.Namespace) -> int:
     try:
         from shapespline import _demo
     except ModuleNotFoundError as error:
-        raise InputError(
+        raise UsageError(
             f"the demo draws with Matplotlib, but {error.name} is not installed; "
             'get it with: pip install "shapespline[plot]"'
         ) from None
@@ -39,10 +52,10 @@ def _demo(options: argparse.Namespace) -> int:
         out.mkdir(parents=True, exist_ok=True)
         return _demo.run(out)
     except OSError as error:
-        raise InputError(f"cannot write to {error.filename or out}: {error.strerror}") from None
+        raise UsageError(f"cannot write to {error.filename or out}: {error.strerror}") from None
 
 
-def _add_demo(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+def _add_demo(commands: argparse._SubParsersAction[Parser]) -> None:
     text = "fit real data, print what was wrong and what was mended, draw figures"
     parser = commands.add_parser("demo", help=text, description=text.capitalize() + ".")
     parser.add_argument(
@@ -55,7 +68,7 @@ def _add_demo(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> 
     parser.set_defaults(run=_demo)
 
 
-def _add_fit(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+def _add_fit(commands: argparse._SubParsersAction[Parser]) -> None:
     text = "fit a curve or a monotone function that keeps the shape of points in a file"
     parser = commands.add_parser(
         "fit",
@@ -64,15 +77,33 @@ def _add_fit(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> N
         epilog="Exit status: 0 when the shape is kept, 1 when it is not, 2 for bad input. Formats "
         "of the files: the page Files of the documentation.",
     )
-    _fit.add_options(parser)
+    add_fit_options(parser, _fit.METHODS)
     parser.set_defaults(run=_fit.run)
 
 
+def _located(
+    data: Points, curve: CurveFile, options: argparse.Namespace, error: shapespline.InputError
+) -> Exception:
+    """Return the error as one about the points, about the curve, or about an option."""
+    if error.argument in ("criteria", "coplanarity", "collinearity", "tolerance") or (
+        error.argument == "boundary" and options.boundary
+    ):
+        return UsageError(str(error))
+    # What the curve's own file says comes first.
+    own = ["points", *(["parameters"] if curve.parameters is None and data.parameters is not None
+                       else [])]  # fmt: skip
+    if error.argument in own:
+        return FileError(data.path, str(error), data.line(error.index))
+    return FileError(curve.path, str(error))
+
+
 def _check(options: argparse.Namespace) -> int:
+    if options.points == options.curve == STREAM:
+        raise UsageError("points and curve cannot both be standard input")
+    refuse_overwriting([options.points, options.curve], filter(None, [options.report]))
     curve = read_curve(options.curve)
     monotone = options.monotone or curve.shape == "monotone"
-    data = (read_function if monotone else read_points)(options.points)
-    # What the curve's own file says comes first.
+    data = (read_function if monotone else read_points)(options.points, options.columns)
     parameters = data.parameters if curve.parameters is None else curve.parameters
     report: Any
     try:
@@ -90,24 +121,18 @@ def _check(options: argparse.Namespace) -> int:
                     collinearity=options.collinearity,
                     tolerance=options.tolerance,
                 )
-    except ValueError as error:
-        text = str(error)
-        if line := data.locate(text):
-            raise FileError(data.path, text, line) from None
-        # Points and curve disagree, and the curve says so; or an option is out of range.
-        about_option = re.match(r"(criteria|coplanarity|collinearity|tolerance)\b", text)
-        raise (InputError(text) if about_option else FileError(curve.path, text)) from None
+    except shapespline.InputError as error:
+        raise _located(data, curve, options, error) from None
+    for note in data.notes:
+        print(f"shapespline: {name_of(data.path)}, {note}", file=sys.stderr)
     if options.report:
         text = json.dumps(report.to_dict(), indent=1, allow_nan=False)
-        try:
-            options.report.write_text(text + "\n", encoding="utf-8")
-        except OSError as error:
-            raise FileError(options.report, f"cannot be written: {error.strerror}") from None
+        write(options.report, text + "\n")
     print(report)
     return 0 if report.ok else 1
 
 
-def _add_check(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+def _add_check(commands: argparse._SubParsersAction[Parser]) -> None:
     text = "check whether a curve, whoever made it, keeps the shape of the points it passes through"
     parser = commands.add_parser(
         "check",
@@ -116,17 +141,12 @@ def _add_check(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         epilog="Exit status: 0 when the shape is kept, 1 when it is not or stays undecided, "
         "2 for bad input.",
     )
-    parser.add_argument(
-        "points",
-        type=Path,
-        metavar="POINTS.csv",
-        help="one point a line; with a header, columns x, y, perhaps z, and perhaps u (parameters)",
-    )
+    add_points(parser)
     parser.add_argument(
         "curve",
         type=Path,
         metavar="CURVE.json",
-        help="Bézier pieces, a B-spline or a piecewise polynomial",
+        help="Bézier pieces, a B-spline or a piecewise polynomial; - is standard input",
     )
     parser.add_argument(
         "--monotone",
@@ -134,16 +154,16 @@ def _add_check(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         help="check that a function y(x) rises and falls as its data do (default where CURVE.json "
         "says so)",
     )
-    names = "convexity, inflection, torsion, coplanarity, collinearity, global-convexity"
+    known = "convexity, inflection, torsion, coplanarity, collinearity, global-convexity"
     parser.add_argument(
         "--criteria",
-        type=lambda names: [name.strip() for name in names.split(",")],
+        type=names,
         metavar="NAME,…",
-        help=f"any of {names} (default: all but the last)",
+        help=f"any of {known} (default: all but the last)",
     )
     parser.add_argument(
         "--boundary",
-        choices=["zero-curvature", "natural", "periodic", "circular"],
+        choices=BOUNDARIES,
         help="what stands in for the missing chords at the ends (default: what CURVE.json says)",
     )
     for name, default, what in (
@@ -152,7 +172,7 @@ def _add_check(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         ("tolerance", 1e-9, "what counts as zero, and as passing through a point"),
     ):
         parser.add_argument(
-            f"--{name}", type=float, default=default, help=f"{what} (default: %(default)s)"
+            f"--{name}", type=real, default=default, help=f"{what} (default: %(default)s)"
         )
     parser.add_argument(
         "--report", type=Path, metavar="OUT.json", help="write the whole report to this file"
@@ -160,8 +180,8 @@ def _add_check(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     parser.set_defaults(run=_check)
 
 
-def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
+def _parser() -> Parser:
+    parser = Parser(
         prog="shapespline", description="Splines that interpolate data and keep its shape."
     )
     parser.add_argument(
@@ -180,8 +200,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
     try:
         status: int = options.run(options)
         sys.stdout.flush()
-    except (InputError, FileError) as error:
+    except (UsageError, FileError) as error:
         print(f"shapespline: {error}", file=sys.stderr)
+        return 2
+    except MemoryError as error:
+        why = f": {shortened(str(error), 200)}" if str(error) else ""
+        print(f"shapespline: the memory does not suffice{why}", file=sys.stderr)
         return 2
     except KeyboardInterrupt:
         print("shapespline: interrupted", file=sys.stderr)
@@ -194,6 +218,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
             return 141  # whoever read the output has seen enough (`| head`)
         print(f"shapespline: standard output: cannot be written: {error.strerror}", file=sys.stderr)
         return 2
+    except Exception:
+        # A fault of the program: not exit status 1, which says that the shape does not hold.
+        traceback.print_exc()
+        return 70
     return status
 
 

@@ -1,0 +1,184 @@
+"""Arguments of the command line: how they are read, and the options of ``shapespline fit``."""
+
+from __future__ import annotations
+
+import argparse
+import re
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, NoReturn
+
+from shapespline._cells import number
+from shapespline._io import LONGEST, shortened
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+__all__ = ["BOUNDARIES", "Parser", "add_fit_options", "add_points", "names", "real"]
+
+BOUNDARIES = ["zero-curvature", "natural", "periodic", "circular"]
+
+
+class Parser(argparse.ArgumentParser):
+    """A parser that says what is wrong in one line, as all of the command does."""
+
+    def error(self, message: str) -> NoReturn:
+        """End the program with exit status 2."""
+        print(
+            f"{self.prog}: {shortened(message, LONGEST)}; see {self.prog} --help", file=sys.stderr
+        )
+        sys.exit(2)
+
+
+# Values. Python's int and float also take 1_0 and the digits of other scripts.
+
+
+def _wrong(what: str, text: str) -> argparse.ArgumentTypeError:
+    return argparse.ArgumentTypeError(f"must be {what}, got '{shortened(text)}'")
+
+
+def real(text: str) -> float:
+    """Return a number."""
+    value = number(text)
+    if value is None:
+        raise _wrong("a number", text)
+    return value
+
+
+def _integer(text: str) -> int:
+    if not re.fullmatch("[-+]?[0-9]{1,18}", text):
+        raise _wrong("an integer that 64 bits hold", text)
+    return int(text)
+
+
+def names(text: str) -> list[str]:
+    """Return names separated by commas."""
+    return [name.strip() for name in text.split(",")]
+
+
+def _vector(text: str) -> list[float]:
+    values = [number(part.strip()) for part in text.split(",")]
+    found = [value for value in values if value is not None]
+    if len(found) < len(values):
+        raise _wrong("numbers separated by commas", text)
+    return found
+
+
+def _parameters(text: str) -> str | float:
+    value = number(text)
+    return text if value is None else value
+
+
+# Options
+
+
+def add_points(parser: argparse.ArgumentParser) -> None:
+    """Give the parser the file of points, and which of its columns to take."""
+    parser.add_argument(
+        "points",
+        type=Path,
+        metavar="POINTS.csv",
+        help="one point a line; with a header, columns x, y, perhaps z, and perhaps u, t or time "
+        "(parameters); - is standard input",
+    )
+    parser.add_argument(
+        "--columns",
+        type=names,
+        metavar="NAME,…",
+        help="which columns to take, by name or by number from 1",
+    )
+
+
+def add_fit_options(parser: argparse.ArgumentParser, methods: Iterable[str]) -> None:
+    """Give the parser the arguments of ``shapespline fit``."""
+    add_points(parser)
+    parser.add_argument(
+        "--method",
+        choices=list(methods),
+        default="nu",
+        help="curves: nu, tension, catmull-rom; monotone functions y(x): quartic, quintic "
+        "(default: %(default)s)",
+    )
+    out = parser.add_argument_group("what to write")
+    out.add_argument(
+        "-o",
+        "--out",
+        type=Path,
+        action="append",
+        default=[],
+        metavar="OUT",
+        help="OUT.csv or .tsv: a table of samples; OUT.json: the curve itself, which "
+        "`shapespline check` reads; OUT.svg (in the plane), OUT.step: the same for other programs; "
+        "-: samples to standard output. May be given several times",
+    )
+    out.add_argument(
+        "--samples", type=_integer, metavar="N", help="default: 20 a segment, 100,001 at most"
+    )
+    out.add_argument(
+        "--by",
+        choices=["parameter", "arc-length"],
+        default="parameter",
+        help="how samples are spaced (default: %(default)s)",
+    )
+    out.add_argument("--report", type=Path, metavar="OUT.json", help="the whole report on shape")
+    out.add_argument(
+        "--plot", type=Path, metavar="OUT.png", help="a figure: .png, .svg or .pdf, by its ending"
+    )
+
+    curve = parser.add_argument_group("curves (nu, tension, catmull-rom)")
+    curve.add_argument(
+        "--parameters",
+        type=_parameters,
+        metavar="HOW",
+        help="chordal, centripetal, uniform or an exponent of the chords' lengths (default: the "
+        "column u of the file, else that of the method)",
+    )
+    curve.add_argument(
+        "--boundary",
+        choices=BOUNDARIES,
+        help="end conditions (default: zero-curvature)",
+    )
+    for end in ("start", "end"):
+        curve.add_argument(
+            f"--{end}-tangent",
+            type=_vector,
+            metavar="X,Y,Z",
+            help=f"tangent at the {end}; write --{end}-tangent=-1,0,0 for a negative number",
+        )
+    curve.add_argument(
+        "--criteria", type=names, metavar="NAME,…", help="which criteria to keep and to check"
+    )
+    for flag, kind, help_text in (
+        ("--step", real, "step of the tension in strategies nussp, growth and reduction"),
+        ("--max-iterations", _integer, "rounds after which the search gives up (exit status 1)"),
+        ("--safety", real, "catmull-rom: share of the bounds on its handles that is used"),
+        ("--tension", real, "nu, catmull-rom: given tension, no search"),
+        ("--tangent-scale", real, "tension: given λ in (0, 1], no search"),
+        ("--coplanarity", real, "sine of the largest angle between binormal and plane normal"),
+        ("--collinearity", real, "sine of the largest angle between tangent and line"),
+        ("--tolerance", real, "what counts as zero"),
+    ):
+        curve.add_argument(
+            flag, type=kind, metavar="N" if kind is _integer else "X", help=help_text
+        )
+    curve.add_argument(
+        "--strategy",
+        choices=["fairest", "growth", "reduction", "nussp"],
+        help="how tension is searched for (default: fairest)",
+    )
+    curve.add_argument(
+        "--continuity", choices=["C1", "G1"], help="catmull-rom: one handle a point, or two"
+    )
+
+    function = parser.add_argument_group("functions (quartic, quintic)")
+    function.add_argument(
+        "--slopes", choices=["optimal", "fritsch-butland"], help="quintic (default: optimal)"
+    )
+    function.add_argument(
+        "--fairness",
+        choices=["bending", "parametric"],
+        help="quintic: the energy that is least (default: bending)",
+    )
+    function.add_argument(
+        "--shape", type=real, metavar="X", help="quartic: first value of α and β (default: 3)"
+    )
