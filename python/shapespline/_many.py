@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal, overload
 
 from shapespline._core import _fit_many
 from shapespline._errors import InputError
+from shapespline._pickling import sealed
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -110,9 +111,9 @@ class Fits(Sequence["SpaceCurve | None"]):
         failed = f", {len(self._errors)} of them failed" if self._errors else ""
         return f"<Fits: {len(self._curves)} curves{failed}>"
 
-    def __reduce__(self) -> tuple[type[Fits], tuple[object, ...]]:
+    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]:
         """Pickle as the curves and the exceptions."""
-        return Fits, (self._curves, dict(self._errors))
+        return sealed(Fits, self._curves, dict(self._errors))
 
 
 def fit_many(

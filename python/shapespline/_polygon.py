@@ -8,10 +8,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from shapespline import _core
+from shapespline._pickling import sealed
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from numpy.typing import ArrayLike, NDArray
 
     from shapespline._core import Tangents, _Boundary, _Criterion, _Parametrization
@@ -75,9 +74,9 @@ class PolygonShape:
             if isinstance(value, np.ndarray):
                 value.flags.writeable = False
 
-    def __reduce__(self) -> tuple[Callable[..., PolygonShape], tuple[Any, ...]]:
+    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]:
         """Pickle by the attributes, so that arrays are read-only again."""
-        return type(self), tuple(getattr(self, field.name) for field in fields(self))
+        return sealed(type(self), *(getattr(self, field.name) for field in fields(self)))
 
     def counts(self) -> dict[str, int]:
         """Return how many segments call for each criterion, those that none calls for left out.

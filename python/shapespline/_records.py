@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
+
+from shapespline._pickling import sealed
 
 __all__ = ["NodeRecord", "OscillationRecord", "UndecidedRecord"]
 
@@ -31,6 +33,10 @@ class UndecidedRecord(NamedTuple):
     segment: int
     criterion: str
     interval: tuple[float, float]
+
+    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]:
+        """Pickle by the fields."""
+        return sealed(type(self), *self)
 
 
 class NodeRecord(NamedTuple):
@@ -65,6 +71,10 @@ class NodeRecord(NamedTuple):
     margin: float
     location: float
 
+    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]:
+        """Pickle by the fields."""
+        return sealed(type(self), *self)
+
 
 class OscillationRecord(NamedTuple):
     """How a segment moves about the plane of its four points: information, in no verdict.
@@ -97,6 +107,10 @@ class OscillationRecord(NamedTuple):
     satisfied: bool
     amplitude: float
     location: float
+
+    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]:
+        """Pickle by the fields."""
+        return sealed(type(self), *self)
 
 
 # help() and editors show these; a named tuple would say "Alias for field number 0".

@@ -10,6 +10,7 @@ from shapespline import _core
 from shapespline._convert import _is_array, piecewise
 from shapespline._core import SpaceCurve, TensionSpline
 from shapespline._errors import InputError
+from shapespline._pickling import sealed
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -299,9 +300,9 @@ class InflectionCount(int):
         """Refuse, too."""
         raise AttributeError(f"an InflectionCount is immutable: {name} cannot be deleted")
 
-    def __reduce__(self) -> tuple[type[InflectionCount], tuple[int, Floats, bool]]:
+    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]:
         """Pickle all three."""
-        return type(self), (int(self), self.direction, self.exact)
+        return sealed(type(self), int(self), self._direction, self._exact)
 
 
 def inflection_count(curve: Any, direction: ArrayLike | None = None) -> InflectionCount:

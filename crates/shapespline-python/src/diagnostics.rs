@@ -1,7 +1,9 @@
 //! What a search did, for Python.
 
-use pyo3::{IntoPyObjectExt, prelude::*};
+use pyo3::prelude::*;
 use shapespline::search::{self, Phase, Status};
+
+use crate::pickle::{self, Kind, Reduced};
 
 /// Diagnostics and history of the search that found a curve.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -34,7 +36,7 @@ pub(crate) struct Search {
 /// >>> ss.NuSpline.shape_preserving(points, "uniform").diagnostics
 /// Diagnostics(status='solved', iterations=..., solves=..., relaxations=..., nodes_changed=5)
 #[pyclass(module = "shapespline", frozen, get_all, eq, hash, weakref)]
-#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
 pub(crate) struct Diagnostics {
     /// How the search ended: ``"solved"``, ``"iteration-limit"`` or ``"stalled"``.
     status: String,
@@ -68,17 +70,6 @@ impl From<&search::Diagnostics> for Diagnostics {
 
 #[pymethods]
 impl Diagnostics {
-    #[new]
-    fn new(
-        status: String,
-        iterations: usize,
-        solves: usize,
-        relaxations: usize,
-        nodes_changed: usize,
-    ) -> Self {
-        Self { status, iterations, solves, relaxations, nodes_changed }
-    }
-
     fn __repr__(&self) -> String {
         format!(
             "Diagnostics(status='{}', iterations={}, solves={}, relaxations={}, nodes_changed={})",
@@ -86,10 +77,8 @@ impl Diagnostics {
         )
     }
 
-    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
-        let d = slf.get();
-        let arguments = (&d.status, d.iterations, d.solves, d.relaxations, d.nodes_changed);
-        Ok((slf.get_type().into_any(), arguments.into_bound_py_any(slf.py())?))
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
+        pickle::reduce_whole(slf, Kind::Diagnostics)
     }
 }
 
@@ -112,7 +101,7 @@ impl Diagnostics {
 /// >>> ss.NuSpline.shape_preserving(points, "uniform").history[0]
 /// SearchStep(phase='raise', violations=2, changed=5)
 #[pyclass(module = "shapespline", frozen, get_all, eq, hash, weakref)]
-#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
 pub(crate) struct SearchStep {
     /// ``"raise"``, ``"relax"`` or ``"verify"``.
     phase: String,
@@ -135,19 +124,12 @@ impl From<&search::Step> for SearchStep {
 
 #[pymethods]
 impl SearchStep {
-    #[new]
-    fn new(phase: String, violations: usize, changed: usize) -> Self {
-        Self { phase, violations, changed }
-    }
-
     fn __repr__(&self) -> String {
         let Self { phase, violations, changed } = self;
         format!("SearchStep(phase='{phase}', violations={violations}, changed={changed})")
     }
 
-    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
-        let step = slf.get();
-        let arguments = (&step.phase, step.violations, step.changed);
-        Ok((slf.get_type().into_any(), arguments.into_bound_py_any(slf.py())?))
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
+        pickle::reduce_whole(slf, Kind::SearchStep)
     }
 }

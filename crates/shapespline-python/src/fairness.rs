@@ -1,9 +1,14 @@
 //! `fairness`: the measures of fairness of any curve.
 
-use pyo3::{IntoPyObjectExt, prelude::*, types::PyTuple};
+use pyo3::{prelude::*, types::PyTuple};
 use shapespline::geometry::{self, Place, fairness};
 
-use crate::{curve::SpaceCurve, piecewise::PiecewiseBezier, work::detached};
+use crate::{
+    curve::SpaceCurve,
+    pickle::{self, Kind, Reduced},
+    piecewise::PiecewiseBezier,
+    work::detached,
+};
 
 /// How fair a curve is: six measures, and where it has cusps and corners.
 ///
@@ -46,8 +51,8 @@ use crate::{curve::SpaceCurve, piecewise::PiecewiseBezier, work::detached};
 /// >>> fairness = ss.fairness(ss.NuSpline([[0, 0], [1, 1], [2, 0], [3, 1]]))
 /// >>> fairness.curvature_extrema, fairness.max_curvature_jump, fairness.cusps
 /// (2, 0.0, ())
-#[pyclass(module = "shapespline", frozen, eq)]
-#[derive(Debug, Clone, PartialEq)]
+#[pyclass(module = "shapespline", frozen, eq, weakref)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub(crate) struct Fairness {
     /// Arc length L, in units of the points.
     #[pyo3(get)]
@@ -95,32 +100,6 @@ impl Fairness {
 
 #[pymethods]
 impl Fairness {
-    #[new]
-    #[allow(clippy::too_many_arguments)]
-    fn new(
-        length: f64,
-        bending: f64,
-        variation: f64,
-        max_curvature: f64,
-        max_curvature_at: f64,
-        curvature_extrema: usize,
-        max_curvature_jump: f64,
-        cusps: Vec<f64>,
-        corners: Vec<f64>,
-    ) -> Self {
-        Self {
-            length,
-            bending,
-            variation,
-            max_curvature,
-            max_curvature_at,
-            curvature_extrema,
-            max_curvature_jump,
-            cusps,
-            corners,
-        }
-    }
-
     /// Parameters at which the speed vanishes, to rounding.
     #[getter]
     fn cusps<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
@@ -153,15 +132,8 @@ impl Fairness {
         )
     }
 
-    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
-        let f = slf.get();
-        let arguments = (
-            (f.length, f.bending, f.variation, f.max_curvature, f.max_curvature_at),
-            (f.curvature_extrema, f.max_curvature_jump, f.cusps.clone(), f.corners.clone()),
-        );
-        let parts =
-            arguments.0.into_pyobject(slf.py())?.add(arguments.1.into_pyobject(slf.py())?)?;
-        Ok((slf.get_type().into_any(), parts.into_bound_py_any(slf.py())?))
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
+        pickle::reduce_whole(slf, Kind::Fairness)
     }
 }
 

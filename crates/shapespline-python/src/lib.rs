@@ -50,10 +50,8 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<report::ShapeRecord>()?;
     module.add_class::<diagnostics::Diagnostics>()?;
     module.add_class::<diagnostics::SearchStep>()?;
-    module.add_function(wrap_pyfunction!(pickle::_curve_from_bytes, module)?)?;
-    module.add_function(wrap_pyfunction!(pickle::_report_from_bytes, module)?)?;
+    module.add_function(wrap_pyfunction!(pickle::_from_bytes, module)?)?;
     module.add_function(wrap_pyfunction!(many::_fit_many, module)?)?;
-    module.add_function(wrap_pyfunction!(pickle::_piecewise_from_bytes, module)?)?;
     module.add_function(wrap_pyfunction!(shape::_check_shape, module)?)?;
     module.add_function(wrap_pyfunction!(shape::_curve_inflections, module)?)?;
     module.add_function(wrap_pyfunction!(shape::_polygon_inflections, module)?)?;

@@ -1,34 +1,123 @@
-//! Bytes for pickles: a version, then what is pickled in postcard's form. Floats keep every bit.
+//! Pickles: kind, version, what is pickled in postcard's form, and a checksum. Floats keep every bit.
 
 use std::sync::Arc;
 
-use pyo3::{exceptions::PyValueError, prelude::*};
+use pyo3::{IntoPyObjectExt, PyClass, prelude::*, types::PyBytes};
 use serde::{Serialize, de::DeserializeOwned};
 use shapespline::geometry::{
-    Boundary, DVec3, DVec4, DataPolygon, Dimension, Parametrization, PiecewiseBezier,
+    self, Boundary, DVec3, DVec4, DataPolygon, Dimension, Parametrization,
 };
 use shapespline::prelude::{CatmullRom, NuSpline, TensionSpline};
 
 use crate::{
     curve::{Curve, Family, SpaceCurve},
-    diagnostics::Search,
-    report::{ShapeReport, Subject},
+    diagnostics::{Diagnostics, Search, SearchStep},
+    error::{Value, invalid},
+    fairness::Fairness,
+    monotone::{Fits, Layout, MonotoneDiagnostics, PiecewisePolynomial, PiecewiseRows},
+    piecewise::PiecewiseBezier,
+    report::{ShapeRecord, ShapeReport, Subject},
+    tangents::Tangents,
     work::detached,
 };
 
 /// Raised whenever the layout changes; bytes of other versions are refused, not guessed at.
-const VERSION: u8 = 2;
+const VERSION: u8 = 3;
 
-/// What a report is about.
-const OWN: u8 = 0;
-const OTHER: u8 = 1;
+/// Length of the checksum, a CRC-32 of everything before it.
+const CHECKSUM: usize = 4;
 
-fn damaged(what: impl std::fmt::Display) -> PyErr {
-    PyValueError::new_err(format!("these bytes hold no curve of this version: {what}"))
+/// What a pickle holds, by the number in its first byte: append only.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Kind {
+    Curve,
+    Report,
+    PiecewiseBezier,
+    Function,
+    Rows,
+    Tangents,
+    ShapeRecord,
+    Diagnostics,
+    SearchStep,
+    MonotoneDiagnostics,
+    Fairness,
 }
 
-fn put<T: Serialize + ?Sized>(bytes: Vec<u8>, value: &T) -> PyResult<Vec<u8>> {
-    postcard::to_extend(value, bytes).map_err(damaged)
+impl Kind {
+    const ALL: [(Self, &'static str); 11] = [
+        (Self::Curve, "a curve"),
+        (Self::Report, "a ShapeReport"),
+        (Self::PiecewiseBezier, "a PiecewiseBezier"),
+        (Self::Function, "a function"),
+        (Self::Rows, "functions of many rows"),
+        (Self::Tangents, "Tangents"),
+        (Self::ShapeRecord, "a ShapeRecord"),
+        (Self::Diagnostics, "Diagnostics"),
+        (Self::SearchStep, "a SearchStep"),
+        (Self::MonotoneDiagnostics, "MonotoneDiagnostics"),
+        (Self::Fairness, "Fairness"),
+    ];
+}
+
+fn refused(text: String) -> PyErr {
+    invalid("data", &[], Value::Nothing, text)
+}
+
+fn damaged(what: impl std::fmt::Display) -> PyErr {
+    refused(format!("the pickle is damaged: {what}"))
+}
+
+/// What `__reduce__` returns: the function that makes the object again, and the bytes it takes.
+pub(crate) type Reduced<'py> = (Bound<'py, PyAny>, (Bound<'py, PyBytes>,));
+
+/// The pickle of an object, whose parts `write` appends in postcard's form.
+pub(crate) fn reduce<'py>(
+    py: Python<'py>,
+    kind: Kind,
+    write: impl FnOnce(Vec<u8>) -> Result<Vec<u8>, postcard::Error> + Send,
+) -> PyResult<Reduced<'py>> {
+    let make = py.import("shapespline._core")?.getattr("_from_bytes")?;
+    let sealed = || {
+        let mut bytes = write(vec![kind as u8, VERSION])?;
+        let checksum = crc32fast::hash(&bytes);
+        bytes.extend_from_slice(&checksum.to_le_bytes());
+        Ok(bytes)
+    };
+    let bytes = detached(py, 0, sealed).map_err(|error: postcard::Error| {
+        refused(format!("the object cannot be pickled: {error}"))
+    })?;
+    Ok((make, (PyBytes::new(py, &bytes),)))
+}
+
+/// The pickle of an object that serde knows as a whole.
+pub(crate) fn reduce_whole<'py, C>(object: &Bound<'py, C>, kind: Kind) -> PyResult<Reduced<'py>>
+where
+    C: PyClass<Frozen = pyo3::pyclass::boolean_struct::True> + Serialize + Sync,
+{
+    let whole = object.get();
+    reduce(object.py(), kind, |bytes| postcard::to_extend(whole, bytes))
+}
+
+/// Kind and parts of a pickle that is whole.
+fn opened(data: &[u8]) -> PyResult<(Kind, &[u8])> {
+    let Some((kind, name)) = data.first().and_then(|&k| Kind::ALL.get(usize::from(k)).copied())
+    else {
+        return Err(refused("these bytes are no pickle of shapespline".to_owned()));
+    };
+    if let Some(version) = data.get(1).filter(|version| **version != VERSION) {
+        return Err(refused(format!(
+            "the pickle of {name} is of version {version}, this shapespline reads version {VERSION}"
+        )));
+    }
+    match data.split_last_chunk::<CHECKSUM>() {
+        Some((sealed, checksum)) if crc32fast::hash(sealed).to_le_bytes() == *checksum => {
+            Ok((kind, sealed.get(2..).unwrap_or_default()))
+        }
+        _ => Err(refused(format!(
+            "the pickle of {name} is damaged: its checksum does not match its {} bytes",
+            data.len()
+        ))),
+    }
 }
 
 fn take<T: DeserializeOwned>(bytes: &mut &[u8]) -> PyResult<T> {
@@ -37,23 +126,64 @@ fn take<T: DeserializeOwned>(bytes: &mut &[u8]) -> PyResult<T> {
     Ok(value)
 }
 
-/// A curve, and how it was found, as bytes.
-pub(crate) fn write_curve(curve: &dyn Curve, search: Option<&Search>) -> PyResult<Vec<u8>> {
-    let bytes = put(vec![VERSION], &(curve.family(), search))?;
-    curve.write(bytes).map_err(damaged)
+fn whole<T: DeserializeOwned>(mut bytes: &[u8]) -> PyResult<T> {
+    let value = take(&mut bytes)?;
+    if bytes.is_empty() { Ok(value) } else { Err(damaged("it goes on behind its end")) }
 }
 
-fn read_version(bytes: &mut &[u8]) -> PyResult<()> {
-    match bytes.split_first() {
-        Some((&VERSION, rest)) => *bytes = rest,
-        Some((version, _)) => return Err(damaged(format!("version {version}"))),
-        None => return Err(damaged("they are empty")),
+/// Makes the object of a pickle.
+#[pyfunction]
+pub(crate) fn _from_bytes<'py>(py: Python<'py>, data: &[u8]) -> PyResult<Bound<'py, PyAny>> {
+    let (kind, mut bytes) = detached(py, 0, || opened(data))?;
+    let size = bytes.len();
+    match kind {
+        Kind::Curve => {
+            let (curve, search) = detached(py, size, || read_curve(&mut bytes))?;
+            Ok(SpaceCurve::of(curve, search).into_python(py)?.into_bound(py))
+        }
+        Kind::Report => {
+            let subject = detached(py, size, || read_subject(&mut bytes))?;
+            let (report, criteria, tolerances) = whole(bytes)?;
+            ShapeReport::of(report, subject, criteria, tolerances).into_bound_py_any(py)
+        }
+        Kind::PiecewiseBezier => {
+            let curve = detached(py, size, || assemble(whole(bytes)?))?;
+            PiecewiseBezier::of(curve).into_bound_py_any(py)
+        }
+        Kind::Function => {
+            let (layout, fits): (Layout, Fits) = detached(py, size, || whole(bytes))?;
+            if !(fits.is_sound() && fits.agree() && fits.len() == layout.columns()) {
+                return Err(damaged("lengths do not agree"));
+            }
+            let function = PiecewisePolynomial::of(fits, &Arc::new(layout));
+            Ok(function.into_python(py)?.into_bound(py))
+        }
+        Kind::Rows => {
+            let fits: Fits = detached(py, size, || whole(bytes))?;
+            if !fits.is_sound() {
+                return Err(damaged("lengths do not agree"));
+            }
+            Ok(PiecewiseRows::of(fits).into_python(py)?.into_bound(py))
+        }
+        Kind::Tangents => whole::<Tangents>(bytes)?.into_bound_py_any(py),
+        Kind::ShapeRecord => whole::<ShapeRecord>(bytes)?.into_bound_py_any(py),
+        Kind::Diagnostics => whole::<Diagnostics>(bytes)?.into_bound_py_any(py),
+        Kind::SearchStep => whole::<SearchStep>(bytes)?.into_bound_py_any(py),
+        Kind::MonotoneDiagnostics => whole::<MonotoneDiagnostics>(bytes)?.into_bound_py_any(py),
+        Kind::Fairness => whole::<Fairness>(bytes)?.into_bound_py_any(py),
     }
-    Ok(())
+}
+
+/// Appends a curve, and how it was found.
+pub(crate) fn write_curve(
+    curve: &dyn Curve,
+    search: Option<&Search>,
+    bytes: Vec<u8>,
+) -> Result<Vec<u8>, postcard::Error> {
+    curve.write(postcard::to_extend(&(curve.family(), search), bytes)?)
 }
 
 fn read_curve(bytes: &mut &[u8]) -> PyResult<(Arc<dyn Curve>, Option<Search>)> {
-    read_version(bytes)?;
     let (family, search): (Family, Option<Search>) = take(bytes)?;
     let curve: Arc<dyn Curve> = match family {
         Family::Nu => Arc::new(take::<NuSpline>(bytes)?),
@@ -70,83 +200,56 @@ fn read_curve(bytes: &mut &[u8]) -> PyResult<(Arc<dyn Curve>, Option<Search>)> {
     Ok((curve, search))
 }
 
-/// A report, and the curve that it is about, as bytes.
-pub(crate) fn write_report(report: &ShapeReport) -> PyResult<Vec<u8>> {
+/// Appends a report, and the curve that it is about.
+pub(crate) fn write_report(
+    report: &ShapeReport,
+    bytes: Vec<u8>,
+) -> Result<Vec<u8>, postcard::Error> {
+    let own = matches!(report.subject, Subject::Own(_));
+    let bytes = postcard::to_extend(&own, bytes)?;
     let bytes = match &report.subject {
-        Subject::Own(curve) => {
-            let mut bytes = vec![OWN];
-            bytes.extend(write_curve(curve.as_ref(), None)?);
-            bytes
-        }
+        Subject::Own(curve) => write_curve(curve.as_ref(), None, bytes)?,
         Subject::Other { polygon, curve, interpolation } => {
             let polygon =
                 (polygon.points(), polygon.parameters(), polygon.boundary(), polygon.dimension());
-            put(vec![OTHER, VERSION], &(polygon, parts(curve), interpolation))?
+            postcard::to_extend(&(polygon, parts(curve), interpolation), bytes)?
         }
     };
-    put(bytes, &(&report.report, report.criteria, report.tolerances))
+    postcard::to_extend(&(&report.report, report.criteria, report.tolerances), bytes)
 }
 
 fn read_subject(bytes: &mut &[u8]) -> PyResult<Subject> {
-    let kind = bytes.split_first();
-    match kind {
-        Some((&OWN, rest)) => {
-            *bytes = rest;
-            Ok(Subject::Own(read_curve(bytes)?.0))
-        }
-        Some((&OTHER, rest)) => {
-            *bytes = rest;
-            read_version(bytes)?;
-            type Polygon = (Vec<DVec3>, Vec<f64>, Boundary, Dimension);
-            let (polygon, curve, interpolation): (Polygon, Parts, f64) = take(bytes)?;
-            let (points, parameters, boundary, dimension) = polygon;
-            let parameters = Parametrization::Given(parameters);
-            let polygon = DataPolygon::with_dimension(points, dimension, &parameters, boundary);
-            let polygon = Arc::new(polygon.map_err(damaged)?);
-            Ok(Subject::Other { polygon, curve: Arc::new(assemble(curve)?), interpolation })
-        }
-        _ => Err(damaged("they are of no known kind")),
+    if take(bytes)? {
+        return Ok(Subject::Own(read_curve(bytes)?.0));
     }
+    type Polygon = (Vec<DVec3>, Vec<f64>, Boundary, Dimension);
+    let (polygon, curve, interpolation): (Polygon, Parts, f64) = take(bytes)?;
+    let (points, parameters, boundary, dimension) = polygon;
+    let parameters = Parametrization::Given(parameters);
+    let polygon = DataPolygon::with_dimension(points, dimension, &parameters, boundary);
+    let polygon = Arc::new(polygon.map_err(damaged)?);
+    Ok(Subject::Other { polygon, curve: Arc::new(assemble(curve)?), interpolation })
 }
 
 /// A piecewise Bézier curve: breaks, homogeneous control points, degree, rational, dimension.
 type Parts = (Vec<f64>, Vec<DVec4>, usize, bool, Dimension);
 
-fn parts(curve: &PiecewiseBezier) -> Parts {
+fn parts(curve: &geometry::PiecewiseBezier) -> Parts {
     let control = (0..curve.pieces()).flat_map(|i| curve.piece(i)).copied().collect();
     let breaks = curve.breaks().to_vec();
     (breaks, control, curve.degree(), curve.is_rational(), curve.dimension())
 }
 
-fn assemble((breaks, control, degree, rational, dimension): Parts) -> PyResult<PiecewiseBezier> {
-    PiecewiseBezier::homogeneous(breaks, control, degree, dimension, rational).map_err(damaged)
+fn assemble(parts: Parts) -> PyResult<geometry::PiecewiseBezier> {
+    let (breaks, control, degree, rational, dimension) = parts;
+    geometry::PiecewiseBezier::homogeneous(breaks, control, degree, dimension, rational)
+        .map_err(damaged)
 }
 
-/// A piecewise Bézier curve as bytes.
-pub(crate) fn write_piecewise(curve: &PiecewiseBezier) -> PyResult<Vec<u8>> {
-    put(vec![VERSION], &parts(curve))
-}
-
-/// The piecewise Bézier curve of a pickle.
-#[pyfunction]
-pub(crate) fn _piecewise_from_bytes(
-    mut data: &[u8],
-) -> PyResult<crate::piecewise::PiecewiseBezier> {
-    read_version(&mut data)?;
-    assemble(take(&mut data)?).map(crate::piecewise::PiecewiseBezier::of)
-}
-
-/// The curve of a pickle.
-#[pyfunction]
-pub(crate) fn _curve_from_bytes(py: Python<'_>, mut data: &[u8]) -> PyResult<Py<PyAny>> {
-    let (curve, search) = detached(py, data.len(), || read_curve(&mut data))?;
-    SpaceCurve::of(curve, search).into_python(py)
-}
-
-/// The report of a pickle.
-#[pyfunction]
-pub(crate) fn _report_from_bytes(py: Python<'_>, mut data: &[u8]) -> PyResult<ShapeReport> {
-    let subject = detached(py, data.len(), || read_subject(&mut data))?;
-    let (report, criteria, tolerances) = take(&mut data)?;
-    Ok(ShapeReport::of(report, subject, criteria, tolerances))
+/// Appends a piecewise Bézier curve.
+pub(crate) fn write_piecewise(
+    curve: &geometry::PiecewiseBezier,
+    bytes: Vec<u8>,
+) -> Result<Vec<u8>, postcard::Error> {
+    postcard::to_extend(&parts(curve), bytes)
 }

@@ -3,10 +3,7 @@
 use std::sync::Arc;
 
 use numpy::PyArray1;
-use pyo3::{
-    prelude::*,
-    types::{PyBytes, PyType},
-};
+use pyo3::{prelude::*, types::PyType};
 use shapespline::geometry::{self, DVec3, Dimension};
 
 use crate::{
@@ -14,7 +11,7 @@ use crate::{
     input::{Array, Query, array, finite},
     options,
     output::{FloatArray, shaped, vector, zeros},
-    pickle,
+    pickle::{self, Kind, Reduced},
 };
 
 /// A curve of any degree, polynomial or rational, given by the Bézier points of its pieces.
@@ -342,13 +339,9 @@ impl PiecewiseBezier {
         )
     }
 
-    fn __reduce__<'py>(
-        &self,
-        py: Python<'py>,
-    ) -> PyResult<(Bound<'py, PyAny>, (Bound<'py, PyBytes>,))> {
-        let make = py.import("shapespline._core")?.getattr("_piecewise_from_bytes")?;
-        let bytes = py.detach(|| pickle::write_piecewise(&self.curve))?;
-        Ok((make, (PyBytes::new(py, &bytes),)))
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        let write = |bytes| pickle::write_piecewise(&self.curve, bytes);
+        pickle::reduce(py, Kind::PiecewiseBezier, write)
     }
 
     fn __copy__(slf: Py<Self>) -> Py<Self> {

@@ -2,7 +2,6 @@
 
 use std::hash::{Hash, Hasher};
 
-use numpy::IntoPyArray;
 use pyo3::prelude::*;
 use shapespline::geometry::{Boundary, DVec3, Dimension};
 
@@ -10,6 +9,7 @@ use crate::{
     error::{invalid, must},
     input::{Numbers, numbers},
     output::{FloatArray, vector},
+    pickle::{self, Kind, Reduced},
 };
 
 /// Given tangents at the two ends of a curve, for the argument ``boundary``.
@@ -44,7 +44,7 @@ use crate::{
 /// >>> curve.tangents[-1]
 /// array([0., 2., 0.])
 #[pyclass(module = "shapespline", frozen, eq, hash, weakref)]
-#[derive(Clone, Copy, PartialEq)]
+#[derive(Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub(crate) struct Tangents {
     start: DVec3,
     end: DVec3,
@@ -126,15 +126,8 @@ impl Tangents {
         format!("Tangents({start:?}, {end:?})")
     }
 
-    #[allow(clippy::type_complexity)]
-    fn __reduce__<'py>(
-        slf: &Bound<'py, Self>,
-    ) -> (Bound<'py, PyAny>, (Bound<'py, PyAny>, Bound<'py, PyAny>)) {
-        let (py, this) = (slf.py(), slf.get());
-        let columns = this.dimension.len();
-        let [start, end] = [this.start, this.end]
-            .map(|v| v.to_array()[..columns].to_vec().into_pyarray(py).into_any());
-        (slf.get_type().into_any(), (start, end))
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
+        pickle::reduce_whole(slf, Kind::Tangents)
     }
 
     fn __copy__(slf: Py<Self>) -> Py<Self> {

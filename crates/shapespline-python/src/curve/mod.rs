@@ -6,7 +6,7 @@
 
 use std::{any::Any, fmt::Debug, sync::Arc};
 
-use pyo3::{PyClass, PyClassInitializer, exceptions::PyTypeError, prelude::*, types::PyBytes};
+use pyo3::{PyClass, PyClassInitializer, exceptions::PyTypeError, prelude::*};
 use shapespline::{
     catmull_rom::CatmullRom,
     criteria::{Record, ShapeReport},
@@ -16,7 +16,13 @@ use shapespline::{
     tension::TensionSpline,
 };
 
-use crate::{catmull_rom, diagnostics::Search, nu, pickle, tension, work::detached};
+use crate::{
+    catmull_rom,
+    diagnostics::Search,
+    nu,
+    pickle::{self, Kind, Reduced},
+    tension,
+};
 
 mod attributes;
 mod evaluate;
@@ -221,14 +227,10 @@ impl SpaceCurve {
         ))
     }
 
-    fn __reduce__<'py>(
-        &self,
-        py: Python<'py>,
-    ) -> PyResult<(Bound<'py, PyAny>, (Bound<'py, PyBytes>,))> {
-        let make = py.import("shapespline._core")?.getattr("_curve_from_bytes")?;
-        let write = || pickle::write_curve(self.curve.as_ref(), self.search.as_deref());
-        let bytes = detached(py, 0, write)?;
-        Ok((make, (PyBytes::new(py, &bytes),)))
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        pickle::reduce(py, Kind::Curve, |bytes| {
+            pickle::write_curve(self.curve.as_ref(), self.search.as_deref(), bytes)
+        })
     }
 
     fn __copy__(slf: Py<Self>) -> Py<Self> {

@@ -3,6 +3,8 @@
 use pyo3::prelude::*;
 use shapespline::monotone::{MonotoneQuartic, MonotoneQuintic, Solver};
 
+use crate::pickle::{self, Kind, Reduced};
+
 /// How the optimisation of one column went. The function is monotone whatever these numbers say.
 ///
 /// Attributes
@@ -31,7 +33,7 @@ use shapespline::monotone::{MonotoneQuartic, MonotoneQuintic, Solver};
 /// >>> how.solver, how.converged, how.certified
 /// ('interior-point', True, True)
 #[pyclass(module = "shapespline", frozen, get_all, eq, weakref)]
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub(crate) struct MonotoneDiagnostics {
     /// The method: ``"active-set"``, ``"interior-point"`` or ``"local"``.
     solver: String,
@@ -80,23 +82,8 @@ impl MonotoneDiagnostics {
     }
 }
 
-type Fields = (String, usize, usize, f64, bool, bool, f64);
-
 #[pymethods]
 impl MonotoneDiagnostics {
-    #[new]
-    fn new(
-        solver: String,
-        iterations: usize,
-        active: usize,
-        kkt_residual: f64,
-        converged: bool,
-        certified: bool,
-        energy: f64,
-    ) -> Self {
-        Self { solver, iterations, active, kkt_residual, converged, certified, energy }
-    }
-
     fn __repr__(&self) -> String {
         let truth = |value| if value { "True" } else { "False" };
         format!(
@@ -112,10 +99,7 @@ impl MonotoneDiagnostics {
         )
     }
 
-    fn __reduce__(slf: &Bound<'_, Self>) -> (Py<PyAny>, Fields) {
-        let d = slf.get().clone();
-        let fields =
-            (d.solver, d.iterations, d.active, d.kkt_residual, d.converged, d.certified, d.energy);
-        (slf.get_type().into_any().unbind(), fields)
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
+        pickle::reduce_whole(slf, Kind::MonotoneDiagnostics)
     }
 }

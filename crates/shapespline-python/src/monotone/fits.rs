@@ -251,6 +251,12 @@ impl Fits {
         Ok(out)
     }
 
+    /// Whether all columns have as many knots, and pieces of one degree.
+    pub(crate) fn agree(&self) -> bool {
+        let first = self.column(0);
+        self.columns().all(|c| c.x().len() == first.x().len() && c.degree() == first.degree())
+    }
+
     /// Whether what was read back can be asked anything without a panic.
     pub(crate) fn is_sound(&self) -> bool {
         let scales = match self {

@@ -2,12 +2,7 @@
 
 use std::sync::Arc;
 
-use pyo3::{
-    IntoPyObjectExt, PyClassInitializer,
-    exceptions::{PyTypeError, PyValueError},
-    prelude::*,
-    types::PyBytes,
-};
+use pyo3::{IntoPyObjectExt, PyClassInitializer, exceptions::PyTypeError, prelude::*};
 use shapespline::monotone::Extrapolation;
 
 use super::{
@@ -20,11 +15,8 @@ use super::{
 use crate::{
     input::Query,
     output::{FloatArray, shaped},
-    work::detached,
+    pickle::{self, Kind, Reduced},
 };
-
-/// Raised whenever the layout of pickles changes.
-const VERSION: u8 = 1;
 
 /// A piecewise polynomial in one variable, on increasing knots: the base of the monotone interpolants.
 ///
@@ -198,16 +190,10 @@ impl PiecewisePolynomial {
         ))
     }
 
-    fn __reduce__<'py>(
-        &self,
-        py: Python<'py>,
-    ) -> PyResult<(Bound<'py, PyAny>, (Bound<'py, PyBytes>,))> {
-        let make = py.import("shapespline._core")?.getattr("_function_from_bytes")?;
-        let bytes = detached(py, 0, || {
-            postcard::to_extend(&(self.layout.as_ref(), self.fits.as_ref()), vec![VERSION])
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        pickle::reduce(py, Kind::Function, |bytes| {
+            postcard::to_extend(&(self.layout.as_ref(), self.fits.as_ref()), bytes)
         })
-        .map_err(damaged)?;
-        Ok((make, (PyBytes::new(py, &bytes),)))
     }
 
     fn __copy__(slf: Py<Self>) -> Py<Self> {
@@ -217,38 +203,4 @@ impl PiecewisePolynomial {
     fn __deepcopy__(slf: Py<Self>, _memo: &Bound<'_, PyAny>) -> Py<Self> {
         slf
     }
-}
-
-/// Bytes that are no pickle of this version.
-pub(crate) fn damaged(what: impl std::fmt::Display) -> PyErr {
-    PyValueError::new_err(format!("these bytes hold no function of this version: {what}"))
-}
-
-/// Reads what follows the version.
-pub(crate) fn read<T: serde::de::DeserializeOwned + Send>(
-    py: Python<'_>,
-    data: &[u8],
-) -> PyResult<T> {
-    match data.split_first() {
-        Some((&VERSION, rest)) => {
-            detached(py, data.len(), || postcard::from_bytes(rest)).map_err(damaged)
-        }
-        Some((version, _)) => Err(damaged(format!("version {version}"))),
-        None => Err(damaged("they are empty")),
-    }
-}
-
-/// The function of a pickle.
-#[pyfunction]
-pub(crate) fn _function_from_bytes(py: Python<'_>, data: &[u8]) -> PyResult<Py<PyAny>> {
-    let (layout, fits): (Layout, Fits) = read(py, data)?;
-    let sound = fits.is_sound() && fits.len() == layout.columns();
-    let first = sound.then(|| fits.column(0));
-    let agree = first.is_some_and(|f| {
-        fits.columns().all(|c| c.x().len() == f.x().len() && c.degree() == f.degree())
-    });
-    if !agree {
-        return Err(damaged("lengths do not agree"));
-    }
-    PiecewisePolynomial::of(fits, &Arc::new(layout)).into_python(py)
 }

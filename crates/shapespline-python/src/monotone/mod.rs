@@ -22,6 +22,12 @@ mod places;
 mod rows;
 mod spline;
 
+pub(crate) use diagnostics::MonotoneDiagnostics;
+pub(crate) use fits::Fits;
+pub(crate) use function::PiecewisePolynomial;
+pub(crate) use layout::Layout;
+pub(crate) use rows::PiecewiseRows;
+
 /// Adds the classes and functions of this part to the module.
 pub(crate) fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<function::PiecewisePolynomial>()?;
@@ -31,8 +37,6 @@ pub(crate) fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<diagnostics::MonotoneDiagnostics>()?;
     module.add_class::<rows::PiecewiseRows>()?;
     module.add_class::<rows::MonotoneRows>()?;
-    module.add_function(wrap_pyfunction!(function::_function_from_bytes, module)?)?;
-    module.add_function(wrap_pyfunction!(rows::_rows_from_bytes, module)?)?;
     module.add_function(wrap_pyfunction!(many::fit_many_monotone, module)?)?;
     module.add_function(wrap_pyfunction!(bezier_like::bezier_like, module)?)?;
     document_call::<function::PiecewisePolynomial>(module.py())?;

@@ -6,14 +6,13 @@ use pyo3::{
     PyClassInitializer,
     exceptions::{PyIndexError, PyTypeError},
     prelude::*,
-    types::PyBytes,
 };
 use shapespline::monotone::{Extrapolation, MonotoneError};
 
 use super::{
     diagnostics::MonotoneDiagnostics,
     fits::{Column, Fits},
-    function::{PiecewisePolynomial, damaged, read},
+    function::PiecewisePolynomial,
     layout::Layout,
     options,
     places::{Arrangement, Places, end},
@@ -23,7 +22,7 @@ use crate::{
     error::monotone_error,
     input::Offsets,
     output::{FloatArray, shaped},
-    work::detached,
+    pickle::{self, Kind, Reduced},
 };
 
 /// Functions of many rows, each with its own knots: the base of `MonotoneRows`.
@@ -44,12 +43,12 @@ pub(crate) struct PiecewiseRows {
 }
 
 impl PiecewiseRows {
-    pub(super) fn of(fits: Fits) -> Self {
+    pub(crate) fn of(fits: Fits) -> Self {
         Self { fits: Arc::new(fits) }
     }
 
     /// The object of the class that the fits are of.
-    pub(super) fn into_python(self, py: Python<'_>) -> PyResult<Py<PyAny>> {
+    pub(crate) fn into_python(self, py: Python<'_>) -> PyResult<Py<PyAny>> {
         let pieces = matches!(*self.fits, Fits::Pieces(_));
         let base = PyClassInitializer::from(self);
         Ok(if pieces {
@@ -265,14 +264,8 @@ impl PiecewiseRows {
         Ok(format!("<{}: {} rows, degree {degree}>", slf.get_type().name()?, fits.len()))
     }
 
-    fn __reduce__<'py>(
-        &self,
-        py: Python<'py>,
-    ) -> PyResult<(Bound<'py, PyAny>, (Bound<'py, PyBytes>,))> {
-        let make = py.import("shapespline._core")?.getattr("_rows_from_bytes")?;
-        let bytes = detached(py, 0, || postcard::to_extend(self.fits.as_ref(), vec![1]))
-            .map_err(damaged)?;
-        Ok((make, (PyBytes::new(py, &bytes),)))
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        pickle::reduce(py, Kind::Rows, |bytes| postcard::to_extend(self.fits.as_ref(), bytes))
     }
 
     fn __copy__(slf: Py<Self>) -> Py<Self> {
@@ -361,14 +354,4 @@ impl MonotoneRows {
     fn diagnostics(slf: &Bound<'_, Self>) -> Vec<MonotoneDiagnostics> {
         diagnostics(&slf.as_super().get().fits)
     }
-}
-
-/// The rows of a pickle.
-#[pyfunction]
-pub(crate) fn _rows_from_bytes(py: Python<'_>, data: &[u8]) -> PyResult<Py<PyAny>> {
-    let fits: Fits = read(py, data)?;
-    if !fits.is_sound() {
-        return Err(damaged("lengths do not agree"));
-    }
-    PiecewiseRows::of(fits).into_python(py)
 }

@@ -4,16 +4,16 @@
 
 use std::sync::OnceLock;
 
-use pyo3::{
-    call::PyCallArgs,
-    exceptions::PyTypeError,
-    prelude::*,
-    types::{PyBytes, PyDict},
-};
+use pyo3::{call::PyCallArgs, exceptions::PyTypeError, prelude::*, types::PyDict};
 use rayon::prelude::*;
 use shapespline::criteria::{self, Criteria, Record, Tolerances};
 
-use crate::{curve::boundary_object, error::subject_error, pickle, work::detached};
+use crate::{
+    curve::boundary_object,
+    error::subject_error,
+    pickle::{self, Kind, Reduced},
+    work::detached,
+};
 
 mod export;
 mod record;
@@ -273,13 +273,8 @@ impl ShapeReport {
         text + ">"
     }
 
-    fn __reduce__<'py>(
-        &self,
-        py: Python<'py>,
-    ) -> PyResult<(Bound<'py, PyAny>, (Bound<'py, PyBytes>,))> {
-        let make = py.import("shapespline._core")?.getattr("_report_from_bytes")?;
-        let bytes = detached(py, 0, || pickle::write_report(self))?;
-        Ok((make, (PyBytes::new(py, &bytes),)))
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        pickle::reduce(py, Kind::Report, |bytes| pickle::write_report(self, bytes))
     }
 
     fn __copy__(slf: Py<Self>) -> Py<Self> {

@@ -2,8 +2,10 @@
 
 use std::hash::{Hash, Hasher};
 
-use pyo3::{IntoPyObjectExt, prelude::*};
+use pyo3::prelude::*;
 use shapespline::criteria::Record;
+
+use crate::pickle::{self, Kind, Reduced};
 
 /// One criterion on one segment: whether it applies, whether it holds, and by how much.
 ///
@@ -32,7 +34,7 @@ use shapespline::criteria::Record;
 /// >>> worst.criterion, worst.segment, worst.satisfied
 /// ('torsion', 1, False)
 #[pyclass(module = "shapespline", frozen, get_all, eq, hash, weakref)]
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
 pub(crate) struct ShapeRecord {
     /// Index of the segment, from 0.
     segment: usize,
@@ -83,18 +85,6 @@ impl From<&Record> for ShapeRecord {
 
 #[pymethods]
 impl ShapeRecord {
-    #[new]
-    fn new(
-        segment: usize,
-        criterion: String,
-        applicable: bool,
-        satisfied: bool,
-        margin: f64,
-        location: f64,
-    ) -> Self {
-        Self { segment, criterion, applicable, satisfied, margin, location }
-    }
-
     fn __repr__(&self) -> String {
         let python = |b| if b { "True" } else { "False" };
         format!(
@@ -109,9 +99,7 @@ impl ShapeRecord {
         )
     }
 
-    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
-        let r = slf.get();
-        let arguments = (r.segment, &r.criterion, r.applicable, r.satisfied, r.margin, r.location);
-        Ok((slf.get_type().into_any(), arguments.into_bound_py_any(slf.py())?))
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
+        pickle::reduce_whole(slf, Kind::ShapeRecord)
     }
 }
