@@ -4,10 +4,10 @@
 //! `((γ(t) − γ(0))×γ'(t))·n = 3t²·[3A, A+C, B+C]` and `(γ'(0)×(γ(t) − γ(0)))·n = 3t²·[3A, A+C]` in
 //! Bernstein coefficients. With `A, B > 0` from `ω·n > 0`, the second asks `A + C > 0` (its value at
 //! the end), the first `B + C > 0` (likewise), and with these all coefficients of both are positive.
-//! So the polynomials of the specification (E6) come down to two signs at the ends:
-//! `A + C = (a×L)·n > 0` and `B + C = (L×c)·n > 0`. Theorem 13.4 asks something else: in its
-//! cases 1(a) and 2(b) it accepts polygons of either orientation (E6). Its case 1(b) is sufficient,
-//! though the polygon turns by more than π: `C > −min(A, B)` implies `C > −2√(AB)`.
+//! So both come down to two signs at the ends: `A + C = (a×L)·n > 0` and `B + C = (L×c)·n > 0`.
+//! Gautam's Theorem 13.4 has the same conditions as its cases 1(b) and 2(a); 1(b) is right also where
+//! the control polygon turns by more than π, as `C > −min(A, B)` implies `C > −2√(AB)`. Its cases
+//! 1(a) and 2(b) are misprints: they accept the mirror image, which turns the wrong way.
 
 use shapespline_geometry::bernstein::quadratic_is_positive;
 
