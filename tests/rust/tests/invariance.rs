@@ -5,8 +5,8 @@ use shapespline::prelude::*;
 use shapespline_tests::{
     families::Family,
     feature_line,
-    generate::{Kind, Random},
-    helix, points,
+    generate::{Kind, Random, polygon},
+    helix, points, scaled,
 };
 
 fn sets() -> Vec<DataPolygon> {
@@ -111,6 +111,39 @@ fn rotation_translation_scale_and_reversal() {
         let other = moved(polygon, |p| p, |d| -d, |u| -u, true);
         agree(&format!("reversal {k}"), polygon, &other, |p| p, |u| -u, true);
     }
+}
+
+/// Mirrors and powers of two round nothing: not a bit of the legs and tensions may differ.
+#[test]
+fn mirrors_and_powers_of_two_change_no_bit() {
+    let signs = [DVec3::new(-1.0, 1.0, 1.0), DVec3::new(1.0, -1.0, -1.0), DVec3::NEG_ONE];
+    let two = |k: i32| 2f64.powi(k);
+    let units = [(two(40), 1.0), (1.0, two(-33)), (two(-80), two(70))];
+    let mut random = Random::new(22);
+    let mut curves = 0;
+    for kind in Kind::ALL {
+        for case in 0..scaled(240) {
+            let Some(polygon) = polygon(kind, case, &mut random) else { continue };
+            let (sign, (scale, unit)) = (signs[case % 3], units[case / 3 % 3]);
+            let point = |p: DVec3| p * sign * scale;
+            let other = moved(&polygon, point, |d| point(d) / unit, |u| u * unit, false);
+            // Parameters that are given are those that the other polygon has.
+            let polygon = moved(&polygon, |p| p, |d| d, |u| u, false);
+            let family = Family::ALL[random.below(8)];
+            if family == Family::Nu(Strategy::Nussp) {
+                continue; // slow by its rule
+            }
+            let [first, second] = [&polygon, &other].map(|p| family.fit(p.clone()));
+            let name = format!("{kind:?} {case} {family:?}");
+            assert_eq!(first.spline.tension(), second.spline.tension(), "{name}");
+            assert_eq!(first.outcome, second.outcome, "{name}");
+            for (a, b) in first.cubic().legs().iter().zip(second.cubic().legs()) {
+                assert_eq!(a.map(point), *b, "{name}");
+            }
+            curves += 1;
+        }
+    }
+    assert!(curves > scaled(1000), "{curves}");
 }
 
 /// Columns of a rotation about (1, 2, 3) by one radian.

@@ -1,0 +1,363 @@
+"""Relations between answers that need no known answer: moved data, other forms, other batches.
+
+Every relation runs over families × boundaries × data sets. Rotations, translations and reversal
+up to rounding are in test_invariance.py; here arithmetic allows the same bits, or another form of
+the same curve is judged.
+"""
+
+from dataclasses import dataclass, replace
+from functools import partial
+from itertools import product
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.interpolate import BPoly
+
+import cases
+import polygons
+import scale
+import shapespline as ss
+from shapespline import _files
+
+_RNG = np.random.default_rng(15)
+#: data sets in space and in the plane
+SETS = {
+    "gm line": polygons.load_points("gm_feature_line"),
+    "protein": polygons.load_points("protein_1a8o_ca"),
+    "coil": polygons.load_points("coil_m16n08_first")[:-1],
+    "helix": polygons.helix(),
+    "walk": polygons.random_walk(_RNG, 30),
+    "uneven chords": polygons.uneven_chords(_RNG, 20),
+    "lattice walk": np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [1, 1, 1], [2, 1, 1], [3, 1, 1]]),
+    "zigzag": np.array([[-1.0, 0, -1], [0, -1, -1], [1, 1, 0]])[np.arange(100) % 3].cumsum(axis=0),
+    "planar walk": polygons.random_walk(_RNG, 30, 2),
+    "stairs": np.array([[1.0, 0], [1, 0], [0, 1]])[np.arange(40) % 3].cumsum(axis=0),
+}
+BOUNDARIES = ("zero-curvature", "periodic", "circular", "tangents")
+PARAMETERS = ("uniform", "chordal", "centripetal")
+
+
+def make_case(family, end, name, parameters):
+    """Return the case of a data set with an end of a kind."""
+    points = np.asarray(SETS[name], dtype=float)
+    dim = points.shape[1]
+    if end == "periodic":
+        points = polygons.close(points)
+    if end == "tangents":
+        size = np.linalg.norm(np.diff(points, axis=0), axis=1)
+        u = cases.Case(name, points, parameters).fit().parameters
+        start, stop = np.array([1.0, 0.5, -0.25])[:dim], np.array([-0.25, 1.0, 0.5])[:dim]
+        h = np.diff(u)
+        end = ss.Tangents(start * size[0] / h[0], stop * size[-1] / h[-1])
+    return cases.Case(f"{name}, {parameters}", points, parameters, end, family)
+
+
+# Each pair of a family and a boundary with each set; the parameters take turns.
+CASES = [
+    pytest.param(
+        make_case(family, end, name, PARAMETERS[k % 3]), id=f"{family.__name__}-{end}-{name}"
+    )
+    for k, (family, end, name) in enumerate(product(cases.FAMILIES, BOUNDARIES, SETS))
+]
+every_case = pytest.mark.parametrize("case", CASES)
+
+
+@dataclass(frozen=True)
+class Move:
+    """A change of coordinates and parameters that rounds nothing."""
+
+    matrix: np.ndarray
+    #: factor of the parameters
+    pace: float = 1.0
+
+    def points(self, x):
+        """Move points, or vectors."""
+        return x @ self.matrix
+
+    def tangents(self, x):
+        """Move derivatives with respect to the parameter."""
+        return self.points(x) / self.pace
+
+    def case(self, case):
+        """Move a case with explicit parameters."""
+        moved = case.moved(self.points(case.points), self.tangents)
+        return replace(moved, parameters=case.parameters * self.pace)
+
+
+def exact_moves(dim):
+    """Return mirrors, powers of two, and in the plane the exchange of the axes.
+
+    In space, sums of three products are rounded in the order of the axes.
+    """
+    moves = {
+        f"mirrored {'xyz'[axis]}": Move(np.diag(sign))
+        for axis, sign in enumerate(1.0 - 2.0 * np.eye(dim))
+    }
+    moves["mirrored at the origin"] = Move(-np.eye(dim))
+    moves["larger"] = Move(2.0**20 * np.eye(dim))
+    moves["smaller"] = Move(2.0**-30 * np.eye(dim), 2.0**-30)
+    moves["slower"] = Move(np.eye(dim), 2.0**25)
+    if dim == 2:
+        moves["axes exchanged"] = Move(np.eye(2)[::-1])
+        moves["a quarter turn"] = Move(np.array([[0.0, 1.0], [-1.0, 0.0]]))
+    return moves
+
+
+def assert_moved_exactly(move, before, after):
+    """Compare two curves, and what is said of them, bit by bit."""
+    np.testing.assert_array_equal(after.tension, before.tension)
+    np.testing.assert_array_equal(after.tangents, move.tangents(before.tangents))
+    np.testing.assert_array_equal(after.bezier, move.points(before.bezier))
+    assert after.diagnostics == before.diagnostics
+    u = np.linspace(*before.parameters[[0, -1]], 57)
+    np.testing.assert_array_equal(after(u * move.pace), move.points(before(u)))
+    mine, theirs = before.check(), after.check()
+    assert theirs.counts() == mine.counts()
+    records = [
+        np.array([(r.segment, r.satisfied, r.margin, r.location / pace) for r in report.segments])
+        for report, pace in [(mine, 1.0), (theirs, move.pace)]
+    ]
+    np.testing.assert_array_equal(*records)
+
+
+@every_case
+def test_mirrors_and_powers_of_two_change_no_bit(case):
+    case = case.explicit()
+    before = [case.tense(0.7), case.preserve()]
+    for move in exact_moves(case.points.shape[1]).values():
+        moved = move.case(case)
+        for mine, theirs in zip(before, [moved.tense(0.7), moved.preserve()], strict=True):
+            assert_moved_exactly(move, mine, theirs)
+
+
+coordinates = st.integers(-3, 3) | st.floats(-4, 4, width=32)
+
+
+@pytest.mark.parametrize("parameters", PARAMETERS)
+@given(data=st.data())
+def test_any_mirrored_or_scaled_polygon(parameters, data):
+    """As above, for named parameters: a power of four scales centripetal ones by one of two."""
+    dim = data.draw(st.sampled_from([2, 3]))
+    points = data.draw(st.lists(st.tuples(*[coordinates] * dim), min_size=3, max_size=9))
+    family = data.draw(st.sampled_from(cases.FAMILIES))
+    case = cases.Case("any", np.array(points, dtype=float), parameters, family=family)
+    sign = np.diag(data.draw(st.tuples(*[st.sampled_from([-1.0, 1.0])] * dim)))
+    scale = 4.0 ** data.draw(st.integers(-20, 20))
+    pace = {"uniform": 1.0, "chordal": scale, "centripetal": np.sqrt(scale)}[parameters]
+    move = Move(scale * sign, pace)
+
+    def outcome(case):
+        try:
+            return case.preserve()
+        except ss.ConvergenceError as error:
+            return error.curve
+        except ValueError as error:
+            return str(error).split(" ", maxsplit=1)[0]
+
+    mine, theirs = outcome(case), outcome(case.moved(move.points(case.points)))
+    if isinstance(mine, str):
+        assert mine == theirs
+    else:
+        assert_moved_exactly(move, mine, theirs)
+
+
+def assert_same_verdicts(mine, theirs, small, last=None):
+    """Compare two reports: margins up to rounding, and the verdicts where margins are not small.
+
+    ``last``: the number of the last segment, where the second report is on the reversed curve.
+    """
+
+    def record(r, flip):
+        return (last - r.segment if flip else r.segment, r.criterion), r
+
+    theirs = dict(record(r, last is not None) for r in theirs.segments)
+    for key, a in (record(r, False) for r in mine.segments):
+        b = theirs.pop(key)
+        assert a.applicable == b.applicable, (a, b)
+        if a.applicable:
+            assert b.margin == pytest.approx(a.margin, abs=small), (a, b)
+            assert a.satisfied == b.satisfied or abs(a.margin) <= small, (a, b)
+    assert not theirs
+
+
+def rounded_moves(case, rng):
+    """Return the case with axes permuted, rotated, moved away and reversed."""
+    dim = case.points.shape[1]
+    order = np.roll(np.arange(dim), 1)
+    spin = polygons.rotation(rng, dim)
+    away = np.ptp(case.points) * rng.normal(size=dim)
+    return {
+        "permuted": case.moved(case.points[:, order], lambda v: v[order]),
+        "rotated": case.moved(case.points @ spin, lambda v: v @ spin),
+        "moved away": case.moved(case.points + away),
+        "reversed": case.reversed(),
+    }
+
+
+@every_case
+def test_reports_move_with_the_data(case, rng):
+    """Up to rounding: what is preserved stays so, and margins are the same."""
+    case = case.explicit()
+    own = case.tense(0.7).check()
+    for name, moved in rounded_moves(case, rng).items():
+        last = len(case.points) - 2 if name == "reversed" else None
+        # Where chords differ by 1e6, short ones lose digits when they are moved away.
+        assert_same_verdicts(own, moved.tense(0.7).check(), 1e-8, last)
+        assert moved.preserve().check().ok, name
+
+
+def exports(curve, path):
+    """Return the same curve in every form that it can leave in, with parameters to judge it by."""
+    u, boundary = curve.parameters, curve.boundary
+    _files.write_curve(path, curve)
+    stored = _files.read_curve(path)
+    given = {"parameters": u, "boundary": boundary}
+    return {
+        "bezier": (curve.bezier, given),
+        "pieces": (ss.PiecewiseBezier(curve.bezier, u), given),
+        "bpoly": (BPoly(curve.bezier.swapaxes(0, 1), u), given),
+        "ppoly": (curve.to_ppoly(), given),
+        "bspline": (curve.to_bspline(), given),
+        "json": (stored.curve, {"parameters": stored.parameters, "boundary": stored.boundary}),
+    }
+
+
+# Control points of chords that differ by 1e6 hold few digits of the short legs: that is for the
+# tests of error bounds.
+@pytest.mark.parametrize("case", [case for case in CASES if "uneven chords" not in case.id])
+def test_every_export_is_judged_like_the_curve(case, tmp_path):
+    for curve in (case.tense(0.7), case.preserve()):
+        own = curve.check()
+        for name, (form, options) in exports(curve, tmp_path / "c.json").items():
+            report = ss.check_shape(curve.points, form, **options)
+            assert_same_verdicts(own, report, 1e-7)
+            assert report.ok == own.ok or abs(own.margin) <= 1e-7, name
+
+
+#: batches around the sizes at which evaluation goes another way
+BATCHES = sorted({m + d for m in (8, 16, 32, 64, 96, 128, 257) for d in (-1, 0, 1)} | {1, 2, 1000})
+
+
+def assert_same_batches(function, domain, rng):
+    """Evaluate one by one, sorted, backwards, strided, in two dimensions and among others."""
+    outside = 0.1 * (domain[1] - domain[0])
+    u = rng.uniform(domain[0] - outside, domain[1] + outside, max(BATCHES))
+    u[::7] = rng.choice(domain, len(u[::7]))
+    alone = np.array([function(x) for x in u.tolist()])
+    for m in BATCHES:
+        some, expected = u[:m], alone[:m]
+        order = np.argsort(some)
+        np.testing.assert_array_equal(function(some), expected)
+        np.testing.assert_array_equal(function(some[order]), expected[order])
+        np.testing.assert_array_equal(function(some[order[::-1]]), expected[order[::-1]])
+        np.testing.assert_array_equal(function(np.repeat(some, 3)[::3]), expected)
+        np.testing.assert_array_equal(function(some[::-1]), expected[::-1])
+        if m % 2 == 0:
+            square = function(some.reshape(2, -1))
+            np.testing.assert_array_equal(square.reshape(expected.shape), expected)
+
+
+@pytest.mark.parametrize("count", [3, 9, 64, 65, 130])
+@pytest.mark.parametrize("dim", [2, 3])
+@pytest.mark.parametrize("end", ["zero-curvature", "periodic"])
+@pytest.mark.parametrize("family", cases.FAMILIES)
+def test_curves_have_one_value_however_they_are_asked(family, end, dim, count, rng):
+    points = polygons.random_walk(rng, count, dim)
+    points = polygons.close(points) if end == "periodic" else points
+    curve = cases.Case("walk", points, "chordal", end, family).tense(rng.uniform(0, 3))
+    questions = {
+        "curvature": curve.curvature,
+        "curvature vector": curve.curvature_vector,
+        "torsion": curve.torsion,
+        "binormal": lambda u: curve.frame(u)[2],
+        "from the left": lambda u: curve(u, 1, side="left"),
+    }
+    for order in range(3):
+        questions[f"derivative {order}"] = lambda u, order=order: curve(u, order)
+    for question in questions.values():
+        assert_same_batches(question, curve.parameters, rng)
+
+
+#: every function of one variable, of data with a rise, a flat and a fall
+FUNCTIONS = {
+    "quintic": ss.MonotoneQuintic,
+    "quintic, fritsch-butland": lambda x, y: ss.MonotoneQuintic(x, y, slopes="fritsch-butland"),
+    "quartic": ss.MonotoneQuartic,
+    "derivative": lambda x, y: ss.MonotoneQuintic(x, y).derivative(),
+    "antiderivative": lambda x, y: ss.MonotoneQuartic(x, y).antiderivative(2),
+}
+
+
+@pytest.mark.parametrize("count", [2, 3, 9, 64, 65, 130, 300])
+@pytest.mark.parametrize("kind", FUNCTIONS)
+def test_functions_have_one_value_however_they_are_asked(kind, count, rng):
+    x = rng.uniform(0.2, 2, count).cumsum()
+    steps = rng.exponential(size=count)
+    steps[count // 2 :] *= -1
+    steps[count // 3 : count // 3 + 2] = 0
+    f = FUNCTIONS[kind](x, steps.cumsum())
+    for nu, extrapolate in product(range(3), [True, False, "clip", "linear"]):
+        assert_same_batches(partial(f, nu=nu, extrapolate=extrapolate), x, rng)
+
+
+@pytest.mark.parametrize("kind", ["quintic", "quartic"])
+@pytest.mark.parametrize("columns", [1, 3, 31, 64, 65])
+def test_columns_are_the_functions_one_by_one(kind, columns, rng):
+    x = rng.uniform(0.2, 2, 40).cumsum()
+    y = rng.exponential(size=(40, columns)).cumsum(axis=0)
+    together = FUNCTIONS[kind](x, y)
+    apart = [FUNCTIONS[kind](x, column) for column in y.T]
+    for m in (1, 8, 33, 257):
+        q = rng.uniform(x[0] - 1, x[-1] + 1, m)
+        for nu in range(3):
+            expected = np.column_stack([f(q, nu) for f in apart])
+            np.testing.assert_array_equal(together(q, nu), expected)
+
+
+@pytest.mark.parametrize("kind", ["quintic", "quartic"])
+def test_inverses_are_found_however_they_are_asked_for(kind, rng):
+    """One alone and many at once are found on different ways, with the same residual."""
+    x, y = rng.uniform(0.2, 2, 300).cumsum(), rng.exponential(size=300).cumsum()
+    f = FUNCTIONS[kind](x, y)
+    levels = rng.uniform(y[0], y[-1], max(BATCHES))
+    alone = np.array([f.inverse(level) for level in levels.tolist()])
+    for m in BATCHES:
+        for some in (slice(m), np.argsort(levels[:m]), slice(None, 3 * m, 3)):
+            found = f.inverse(levels[some])
+            np.testing.assert_allclose(f(found), levels[some], rtol=0, atol=1e-14 * y[-1])
+            np.testing.assert_allclose(found, alone[some], rtol=0, atol=1e-9 * x[-1])
+
+
+METHODS = {ss.NuSpline: "nu", ss.TensionSpline: "tension", ss.CatmullRom: "catmull-rom"}
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+@pytest.mark.parametrize("end", BOUNDARIES)
+@pytest.mark.parametrize("family", cases.FAMILIES)
+def test_fits_of_many_are_the_single_fits(family, end, dim, rng):
+    """All sets of a dimension in one collection, and collections around the sizes of blocks."""
+    names = [name for name, points in SETS.items() if np.shape(points)[1] == dim]
+    sets = [make_case(family, end, name, "chordal") for name in names]
+    if end == "tangents":
+        sets = [replace(case, boundary=sets[0].boundary) for case in sets]
+    singles = [case.preserve() for case in sets]
+    for count in (1, 3, 4, 5, 8, 16, 33, 65) if scale.LONG else (3, 33):
+        chosen = rng.integers(len(sets), size=count)
+        points = np.concatenate([sets[k].points for k in chosen])
+        offsets = np.cumsum([0, *(len(sets[k].points) for k in chosen)])
+        threads = [None, 1, 3][count % 3]
+        fits = ss.fit_many(
+            points,
+            offsets,
+            METHODS[family],
+            parameters="chordal",
+            boundary=sets[0].boundary,
+            threads=threads,
+        )
+        for k, curve in zip(chosen, fits, strict=True):
+            np.testing.assert_array_equal(curve.bezier, singles[k].bezier)
+            np.testing.assert_array_equal(curve.tension, singles[k].tension)
+            assert curve.diagnostics == singles[k].diagnostics
+            assert curve.check().to_dict() == singles[k].check().to_dict()
