@@ -3,14 +3,16 @@
 import csv
 import io
 import json
+import os
 import subprocess
 import sys
 import time
+from contextlib import redirect_stderr, redirect_stdout
 from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import shapespline as ss
@@ -261,6 +263,63 @@ def test_arguments_are_refused_in_one_line(arguments, what, tmp_path, capsys):
     assert len(errors) < 600
 
 
+FLAGS = [action.option_strings[-1] for action in cli._parser()._actions[-1].choices["fit"]._actions
+         if action.option_strings and action.dest not in ("help", "plot")]  # fmt: skip
+VALUES = [
+    "0", "1", "-1", "0.5", "nan", "inf", "1e308", "1e-320", "1,0", "1,0,0", "0,0,0", "nan,1,1",
+    "x,y", "2,1", "x", "u", "periodic", "circular", "nu", "tension", "catmull-rom", "quartic",
+    "quintic", "arc-length", "parameter", "torsion", "convexity,convexity", "fairest", "growth",
+    "reduction", "nussp", "C1", "G1", "optimal", "fritsch-butland", "bending", "uniform", "o.csv",
+    "o.json", "o.svg", "o.step", "-", "no/o.csv", "plane.csv", ".", "é.csv", "", "1" * 5000,
+    "a\0b", "x" * 5000 + ".csv",
+]  # fmt: skip
+FILES = {
+    "plane.csv": "x,y\n0,0\n1,1\n2,0\n3,1\n3,4\n",
+    "space.csv": "u,x,y,z\n0,0,0,0\n1,1,1,0\n2,2,0,1\n4,3,1,3\n",
+    "function.csv": "t,$f$\n0,0\n1,0\n2,5\n",
+    "large.csv": "0,0\n1e300,1e300\n2e300,0\n",
+    "small.csv": "x,y,z\n0,0,0\n1e-300,0,0\n2e-300,0,1e-300\n0,1e-301,3e-300\n",
+    "far.csv": "0,1e15\n1e-3,1e15\n2e-3,1e15\n",
+}
+
+
+@given(
+    file=st.sampled_from(sorted(FILES)),
+    options=st.lists(st.tuples(st.sampled_from(FLAGS), st.sampled_from(VALUES)), max_size=4),
+)
+@settings(max_examples=scaled(3000))
+def test_any_arguments_are_heeded_or_refused_in_one_line(file, options, tmp_path_factory):
+    folder = tmp_path_factory.mktemp("arguments")
+    for name, text in FILES.items():
+        (folder / name).write_text(text, encoding="utf-8")
+    err, before = io.StringIO(), Path.cwd()
+    os.chdir(folder)
+    try:
+        with redirect_stdout(io.StringIO()), redirect_stderr(err):
+            status = cli.main(["fit", file, *(f"{flag}={value}" for flag, value in options)])
+    except SystemExit as end:
+        status = end.code
+    finally:
+        os.chdir(before)
+    assert status in (0, 1, 2), err.getvalue()
+    lines = err.getvalue().splitlines()
+    if status == 2:
+        assert len(lines) == 1, lines
+        assert lines[0].startswith("shapespline")
+    for name, text in FILES.items():
+        assert (folder / name).read_text(encoding="utf-8") == text, "inputs stay as they are"
+
+
+@pytest.mark.parametrize(
+    ("method", "name"),
+    [("nu", "$_$"), ("nu", "点"), ("quintic", r"$\frac$"), ("quintic", "x" * 10_000)],
+)
+def test_names_of_columns_and_files_are_no_mathematics(method, name, run, tmp_path):
+    points = write(tmp_path / "a$_$.csv", f"{name},{name}b\n0,0\n1,1\n2,3\n")
+    status, _, errors = run("fit", points, "--method", method, "--plot", tmp_path / "f.svg")
+    assert (status, errors) == (0, "")
+
+
 @pytest.mark.parametrize("samples", [10**7 + 1, 10**17, -5, 0])
 def test_numbers_of_samples(samples, run, tmp_path):
     status, _, errors = run(
@@ -341,7 +400,7 @@ def test_nothing_is_written_twice_or_over_what_is_checked(run, tmp_path):
 def test_standard_input(tmp_path):
     def command(*arguments, text):
         return subprocess.run(
-            [sys.executable, "-m", "shapespline.cli", *map(str, arguments)],
+            [sys.executable, "-m", "shapespline", *map(str, arguments)],
             input=text, capture_output=True, check=False, timeout=60,
         )  # fmt: skip
 

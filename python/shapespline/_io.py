@@ -97,8 +97,23 @@ def _is_same(a: Path, b: Path) -> bool:
     try:
         return a.samefile(b)
     except (OSError, ValueError):
-        # One of them is not there yet.
-        return os.path.realpath(a) == os.path.realpath(b)
+        # One of them is not there yet, or cannot be.
+        return _resolved(a) == _resolved(b)
+
+
+def _resolved(path: Path) -> str:
+    try:
+        return os.path.realpath(path)
+    except (OSError, ValueError):
+        return str(path)
+
+
+def _is_special(path: Path) -> bool:
+    """Whether a path is no regular file, such as /dev/null: it may be written often."""
+    try:
+        return path.exists() and not path.is_file()
+    except (OSError, ValueError):
+        return False
 
 
 def refuse_overwriting(inputs: Iterable[Path], outputs: Iterable[Path]) -> None:
@@ -108,8 +123,7 @@ def refuse_overwriting(inputs: Iterable[Path], outputs: Iterable[Path]) -> None:
     for path in outputs:
         if path != STREAM and any(_is_same(path, other) for other in read):
             raise UsageError(f"{path}: is read by this command and must not be overwritten")
-        # What is no regular file, such as /dev/null, may be written any number of times.
-        if path != STREAM and path.exists() and not path.is_file():
+        if path != STREAM and _is_special(path):
             continue
         if any(_is_same(path, other) for other in written):
             raise UsageError(f"{path}: must not be written twice")

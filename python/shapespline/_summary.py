@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from typing import TYPE_CHECKING, Any
 
 import matplotlib as mpl
@@ -9,6 +10,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from shapespline import SpaceCurve, plot
+from shapespline._io import shortened
 from shapespline.plot._style import STYLE
 
 if TYPE_CHECKING:
@@ -46,10 +48,18 @@ def _curve(figure: Figure, c: SpaceCurve, report: Any, names: Sequence[str]) -> 
     plot.criteria(report, ax=figure.add_subplot(grid[-1, 1]))
 
 
+def _label(text: str) -> str:
+    """Return a text of the user's for a figure: short, and no mathematics for Matplotlib."""
+    return shortened(text).replace("$", r"\$")
+
+
 def draw(fitted: Any, report: Any, path: Path, *, title: str, names: Sequence[str]) -> None:
     """Draw a curve or a function with the report on its shape, and write it to a file."""
+    title, names = _label(title), [_label(name) for name in names]
     # The same input gives the same file: no date, and no random names inside an SVG.
-    with mpl.rc_context({**STYLE, "svg.hashsalt": "shapespline"}):
+    with mpl.rc_context({**STYLE, "svg.hashsalt": "shapespline"}), warnings.catch_warnings():
+        # Letters that the font lacks are drawn as boxes.
+        warnings.filterwarnings("ignore", message="Glyph")
         figure = Figure(figsize=(11, 6.2), layout="constrained")
         figure.suptitle(f"{title}: {type(fitted).__name__}", x=0.008, ha="left", fontsize=12)
         if isinstance(fitted, SpaceCurve):
