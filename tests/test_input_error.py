@@ -19,7 +19,7 @@ def own(points=LINE):
 ERRORS = {
     # what is wrong: (call, argument, index, value)
     "a point": (lambda: own([[0, 0], [1, NAN]]), "points", 1, NAN),
-    "a repeated point": (lambda: own([[0, 0], [1, 1], [1, 1]]), "points", 2, (1, 1, 0)),
+    "a repeated point": (lambda: own([[0, 0], [1, 1], [1, 1]]), "points", 2, (1, 1)),
     "too few points": (lambda: own([[0, 0]]), "points", None, 1),
     "shape of points": (lambda: own(np.eye(4)), "points", None, (4, 4)),
     "a parameter": (lambda: ss.NuSpline(LINE, [0, 2, 1]), "parameters", 2, 1.0),
@@ -48,7 +48,7 @@ ERRORS = {
         lambda: ss.fit_many(LINE + [LINE[2]] * 2, [0, 3, 5], errors="raise"),
         "points",
         (1, 1),
-        (2, 0, 0),
+        (2, 0),
     ),
     "an offset": (lambda: ss.fit_many(LINE, [0, 4]), "offsets", 1, 4),
     "a point off the curve": (

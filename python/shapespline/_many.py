@@ -73,7 +73,7 @@ class Fits(Sequence["SpaceCurve | None"]):
     >>> fits[2].check().ok, fits[1]
     (True, None)
     >>> print(fits.errors[1])
-    curve 1: points[1] repeats points[0]: [5, 5, 0]; neighbouring points must differ
+    curve 1: points[1] repeats points[0]: (5, 5); neighbouring points must differ
     """
 
     __slots__ = ("__weakref__", "_curves", "_errors")

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use crate::{
-    InputError,
+    Coordinates, Dimension, InputError,
     vector::{length, normalize},
 };
 
@@ -47,13 +47,18 @@ pub(crate) fn circle_tangent(p: DVec3, q: DVec3, r: DVec3, h: f64) -> DVec3 {
     (along * angle.cos() - across * sine) * speed
 }
 
-pub(crate) fn check_tangent(end: &'static str, value: DVec3) -> Result<(), InputError> {
+pub(crate) fn check_tangent(
+    end: &'static str,
+    value: DVec3,
+    dimension: Dimension,
+) -> Result<(), InputError> {
     if let Some(index) = value.to_array().iter().position(|v| !v.is_finite()) {
         let value = value[index];
         let argument = if end == "start" { "boundary.start" } else { "boundary.end" };
         return Err(InputError::NotFinite { argument, index, value });
     }
     if value == DVec3::ZERO {
+        let value = Coordinates { vector: value, dimension };
         return Err(InputError::ZeroTangent { end, value });
     }
     Ok(())

@@ -1,6 +1,37 @@
 //! What can be wrong with a user's input: always with the argument, the place and the value.
 
+use std::fmt;
+
 use glam::DVec3;
+
+use crate::Dimension;
+
+/// A point or a vector in the dimension of the input it came from.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Coordinates {
+    /// Its coordinates; of planar ones the third is zero.
+    pub vector: DVec3,
+    /// How many of them were given.
+    pub dimension: Dimension,
+}
+
+impl Coordinates {
+    /// The coordinates that were given.
+    #[must_use]
+    pub fn to_vec(self) -> Vec<f64> {
+        self.vector.to_array()[..self.dimension.len()].to_vec()
+    }
+}
+
+impl fmt::Display for Coordinates {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let DVec3 { x, y, z } = self.vector;
+        match self.dimension {
+            Dimension::Two => write!(f, "({x}, {y})"),
+            Dimension::Three => write!(f, "({x}, {y}, {z})"),
+        }
+    }
+}
 
 /// Unusable input. Every variant names the argument, the index and the offending value.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -47,7 +78,7 @@ pub enum InputError {
         /// Index of the second of the two.
         index: usize,
         /// The point.
-        value: glam::DVec3,
+        value: Coordinates,
     },
     /// Parameters that do not increase strictly.
     #[error("{argument} must be strictly increasing, but {argument}[{index}] = {value} does not exceed \
@@ -79,9 +110,9 @@ pub enum InputError {
         /// Index of the last point.
         last: usize,
         /// The first point.
-        start: glam::DVec3,
+        start: Coordinates,
         /// The last point.
-        end: glam::DVec3,
+        end: Coordinates,
     },
     /// Numbers at the nodes of closed data whose last is not the first.
     #[error(
@@ -126,7 +157,7 @@ pub enum InputError {
         /// `"start"` or `"end"`.
         end: &'static str,
         /// The vector.
-        value: glam::DVec3,
+        value: Coordinates,
     },
     /// Finite data whose differences leave the range of f64.
     #[error("points[{index}] and points[{next}] are too far apart for f64: {what} is {value}",

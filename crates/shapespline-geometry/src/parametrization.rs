@@ -4,7 +4,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use crate::{
-    InputError,
+    Coordinates, Dimension, InputError,
     vector::{is_ordinary, length},
 };
 
@@ -131,7 +131,8 @@ fn bad_spacing(points: &[DVec3], index: usize, previous: f64, value: f64) -> Inp
     if !value.is_finite() {
         InputError::Overflow { index: index - 1, what: "its parameter", value }
     } else if points[index - 1] == points[index] {
-        InputError::RepeatedPoint { index, value: points[index] }
+        let value = Coordinates { vector: points[index], dimension: Dimension::Three };
+        InputError::RepeatedPoint { index, value }
     } else if value <= previous {
         // A chord lost to rounding beside the length so far.
         InputError::NotIncreasing { argument: "parameters", index, previous, value }

@@ -7,7 +7,7 @@ use once_cell::race::OnceBox;
 use rayon::prelude::*;
 
 use crate::{
-    Boundary, InputError, Parametrization,
+    Boundary, Coordinates, InputError, Parametrization,
     boundary::{check_tangent, circle_tangent},
     error::check_room,
     vector::{ORDINARY, is_ordinary, normalize},
@@ -94,25 +94,30 @@ impl DataPolygon {
         Self::with_dimension(points, Dimension::Two, parametrization, boundary)
     }
 
-    /// Polygon through points whose third coordinate is zero when `dimension` is two.
+    /// Polygon through points whose third coordinate is zero when `dimension` is two. The last point of
+    /// periodic data is made equal to the first where they [agree](ends_agree) to rounding.
     ///
     /// # Errors
     /// As [`DataPolygon::new`].
     pub fn with_dimension(
-        points: Vec<DVec3>,
+        mut points: Vec<DVec3>,
         dimension: Dimension,
         parametrization: &Parametrization,
         boundary: Boundary,
     ) -> Result<Self, InputError> {
-        check_ends(&points, boundary)?;
-        let longest = check_chords(&points)?;
+        if boundary == Boundary::Periodic && points.len() > 1 && ends_agree(&points) {
+            let last = points.len() - 1;
+            points[last] = points[0];
+        }
+        check_ends(&points, dimension, boundary)?;
+        let longest = check_chords(&points, dimension)?;
         let parameters = parametrization.parameters(&points)?;
         check_velocities(&points, &parameters, longest)?;
         // No number of ordinary chords leads from a point with twice the room to one without.
         if longest > ORDINARY || check_room("points", &[2.0 * points[0]]).is_err() {
             check_room("points", &points)?;
         }
-        let tangents = end_tangents(&points, &parameters, boundary)?;
+        let tangents = end_tangents(&points, &parameters, boundary, dimension)?;
         let directions = OnceBox::new();
         Ok(Self { points, parameters, directions, boundary, tangents, dimension })
     }
@@ -296,7 +301,26 @@ impl DataPolygon {
     }
 }
 
-fn check_ends(points: &[DVec3], boundary: Boundary) -> Result<(), InputError> {
+/// Whether the last point is the first, but for a few roundings of coordinates of this size: the points
+/// of a circle, for example, do not close exactly.
+#[must_use]
+pub fn ends_agree(points: &[DVec3]) -> bool {
+    /// Roundings that a coordinate may have seen, in units of the last place of the largest.
+    const ROUNDINGS: f64 = 8.0;
+    let [first, .., last] = points else { return true };
+    let gap = (*last - *first).abs().max_element();
+    if gap == 0.0 || !(first.is_finite() && last.is_finite()) {
+        return gap == 0.0;
+    }
+    let extent = points.iter().map(|p| p.abs().max_element()).fold(0.0, f64::max);
+    gap <= ROUNDINGS * f64::EPSILON * extent && extent.is_finite()
+}
+
+fn check_ends(
+    points: &[DVec3],
+    dimension: Dimension,
+    boundary: Boundary,
+) -> Result<(), InputError> {
     let (needed, why) = match boundary {
         Boundary::Periodic => (3, " for boundary \"periodic\""),
         Boundary::Circular => (3, " for boundary \"circular\""),
@@ -309,6 +333,7 @@ fn check_ends(points: &[DVec3], boundary: Boundary) -> Result<(), InputError> {
     let (start, end) = (points[0], points[points.len() - 1]);
     // Points that are not numbers are told of by `check_chords`.
     if boundary == Boundary::Periodic && start != end && start.is_finite() && end.is_finite() {
+        let [start, end] = [start, end].map(|vector| Coordinates { vector, dimension });
         return Err(InputError::NotClosed { last: points.len() - 1, start, end });
     }
     Ok(())
@@ -316,7 +341,7 @@ fn check_ends(points: &[DVec3], boundary: Boundary) -> Result<(), InputError> {
 
 /// Points must be finite, and neighbours differ, by no more than f64 holds. Returns a bound on the
 /// components of chords, the largest of them where it is not ordinary.
-fn check_chords(points: &[DVec3]) -> Result<f64, InputError> {
+fn check_chords(points: &[DVec3], dimension: Dimension) -> Result<f64, InputError> {
     let largest = |chords: Range<usize>| {
         let ends = points[chords.start..=chords.end].windows(2);
         if ends.map(|p| u64::from(!is_ordinary(p[1] - p[0]))).sum::<u64>() == 0 {
@@ -340,7 +365,7 @@ fn check_chords(points: &[DVec3]) -> Result<f64, InputError> {
         (Err(a), Err(b)) => Err(a.min(b)),
         (Err(i), _) | (_, Err(i)) => Err(i),
     };
-    in_blocks(points.len() - 1, largest, both).map_err(|i| bad_chord(points, i))
+    in_blocks(points.len() - 1, largest, both).map_err(|i| bad_chord(points, dimension, i))
 }
 
 /// `work` on `0..count`: from two blocks on on all threads, their results joined.
@@ -358,7 +383,7 @@ fn in_blocks<T: Send>(
 }
 
 /// What is wrong with chord `i`, the first that is not a positive number.
-fn bad_chord(points: &[DVec3], i: usize) -> InputError {
+fn bad_chord(points: &[DVec3], dimension: Dimension, i: usize) -> InputError {
     for index in [i, i + 1] {
         let value = points[index].to_array().into_iter().find(|x| !x.is_finite());
         if let Some(value) = value {
@@ -367,7 +392,8 @@ fn bad_chord(points: &[DVec3], i: usize) -> InputError {
     }
     let chord = points[i + 1] - points[i];
     if chord == DVec3::ZERO {
-        return InputError::RepeatedPoint { index: i + 1, value: points[i + 1] };
+        let value = Coordinates { vector: points[i + 1], dimension };
+        return InputError::RepeatedPoint { index: i + 1, value };
     }
     InputError::Overflow { index: i, what: "the chord", value: crate::length(chord) }
 }
@@ -394,12 +420,13 @@ fn end_tangents(
     points: &[DVec3],
     parameters: &[f64],
     boundary: Boundary,
+    dimension: Dimension,
 ) -> Result<Option<[DVec3; 2]>, InputError> {
     match boundary {
         Boundary::ZeroCurvature | Boundary::Periodic => Ok(None),
         Boundary::Tangents { start, end } => {
-            check_tangent("start", start)?;
-            check_tangent("end", end)?;
+            check_tangent("start", start, dimension)?;
+            check_tangent("end", end, dimension)?;
             Ok(Some([start, end]))
         }
         Boundary::Circular => {

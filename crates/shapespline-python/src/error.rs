@@ -5,7 +5,10 @@ use std::fmt;
 
 use pyo3::{PyErr, PyTypeInfo, prelude::*, types::PyTuple};
 use shapespline::{
-    criteria::CurveError, geometry::InputError, monotone::MonotoneError, nu::FitError,
+    criteria::CurveError,
+    geometry::{Coordinates, InputError},
+    monotone::MonotoneError,
+    nu::FitError,
 };
 
 pyo3::import_exception!(shapespline._errors, ConvergenceError);
@@ -57,9 +60,9 @@ impl From<&[usize]> for Value {
     }
 }
 
-impl From<shapespline::geometry::DVec3> for Value {
-    fn from(value: shapespline::geometry::DVec3) -> Self {
-        Self::Vector(value.to_array().to_vec())
+impl From<Coordinates> for Value {
+    fn from(value: Coordinates) -> Self {
+        Self::Vector(value.to_vec())
     }
 }
 

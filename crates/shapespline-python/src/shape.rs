@@ -9,7 +9,10 @@ use shapespline::{
         CurveError, INTERPOLATION, InflectionCount, Tolerances, curve_inflections_from,
         curve_inflections_with, polygon_inflections_from, polygon_inflections_with, polygon_shape,
     },
-    geometry::{self, Boundary, DVec3, DVec4, DataPolygon, Dimension, Parametrization, normalize},
+    geometry::{
+        self, Boundary, Coordinates, DVec3, DVec4, DataPolygon, Dimension, Parametrization,
+        normalize,
+    },
 };
 
 use crate::{
@@ -86,7 +89,7 @@ pub(crate) fn _check_shape(
 /// Whether the last point is the first, and the curve goes on there in the direction it began with.
 fn closes_smoothly(curve: &geometry::PiecewiseBezier, points: &[DVec3], u: &[f64]) -> bool {
     let n = points.len() - 1;
-    if n < 2 || points[0] != points[n] {
+    if n < 2 || !geometry::ends_agree(points) {
         return false;
     }
     let begins = curve.between([u[0], u[1]], points[0]);
@@ -128,7 +131,8 @@ fn view(object: &Bound<'_, PyAny>) -> PyResult<Option<DVec3>> {
         return Err(must("direction", &[i], "be finite", given.to_array()[i]));
     }
     if given == DVec3::ZERO {
-        return Err(invalid("direction", &[], given, "direction must not be the zero vector"));
+        let value = Coordinates { vector: given, dimension: Dimension::Three };
+        return Err(invalid("direction", &[], value, "direction must not be the zero vector"));
     }
     Ok(Some(given))
 }
@@ -148,9 +152,9 @@ pub(crate) fn _polygon_inflections<'py>(
 ) -> PyResult<Counted<'py>> {
     let Points { points, dimension } = points;
     let count = match direction {
-        Some(direction) => {
-            detached(py, points.len(), || polygon_inflections_from(&points, direction).map(Some))
-        }
+        Some(direction) => detached(py, points.len(), || {
+            polygon_inflections_from(&points, dimension, direction).map(Some)
+        }),
         None => {
             interruptible(py, ALL, |go_on| polygon_inflections_with(&points, dimension, go_on))?
         }

@@ -3,7 +3,7 @@
 use std::hash::{Hash, Hasher};
 
 use pyo3::prelude::*;
-use shapespline::geometry::{Boundary, DVec3, Dimension};
+use shapespline::geometry::{Boundary, Coordinates, DVec3, Dimension};
 
 use crate::{
     error::{invalid, must},
@@ -87,7 +87,7 @@ fn tangent(argument: &str, object: &Bound<'_, PyAny>) -> PyResult<(DVec3, Dimens
     }
     if vector == DVec3::ZERO {
         let text = format!("{argument} must not be the zero vector");
-        return Err(invalid(argument, &[], vector, text));
+        return Err(invalid(argument, &[], Coordinates { vector, dimension }, text));
     }
     Ok((vector, dimension))
 }

@@ -24,7 +24,7 @@ fn data() {
     let cases = [
         (refused(with(2, DVec3::new(0.0, f64::NAN, 0.0)), chordal, natural), "points[2]", "NaN"),
         (refused(with(1, DVec3::INFINITY), chordal, natural), "points[1]", "inf"),
-        (refused(with(2, DVec3::X), chordal, natural), "points[2] repeats points[1]", "[1, 0, 0]"),
+        (refused(with(2, DVec3::X), chordal, natural), "points[2] repeats points[1]", "(1, 0, 0)"),
         (refused(with(2, DVec3::X), &given(&[0.0, 1.0, 2.0, 3.0]), natural), "points[2]", "differ"),
         (refused(points()[..1].to_vec(), chordal, natural), "points", "at least 2 points"),
         (refused(vec![], chordal, natural), "points", "got 0"),

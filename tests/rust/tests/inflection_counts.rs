@@ -213,7 +213,8 @@ fn counts_do_not_depend_on_scale_position_orientation_or_direction() {
             let back: Vec<DVec3> = points.iter().rev().copied().collect();
             let backwards = polygon_inflections(&back, Dimension::Three).unwrap();
             assert_eq!(backwards.count, expected, "{kind:?}");
-            let seen = polygon_inflections_from(&back, backwards.direction).unwrap();
+            let seen =
+                polygon_inflections_from(&back, Dimension::Three, backwards.direction).unwrap();
             assert_eq!(seen.count, expected, "{kind:?}");
         }
     }
@@ -226,7 +227,10 @@ fn large_polygons_and_piecewise_curves() {
     let start = std::time::Instant::now();
     let count = polygon_inflections(&walk, Dimension::Three).unwrap();
     println!("{} inflections of 1,500 points in {:?}", count.count, start.elapsed());
-    assert_eq!(polygon_inflections_from(&walk, count.direction).unwrap().count, count.count);
+    assert_eq!(
+        polygon_inflections_from(&walk, Dimension::Three, count.direction).unwrap().count,
+        count.count
+    );
 
     // A corner counts as a turn: a polyline as a curve has the inflections of the polygon.
     let points = Kind::Walk.points(12, &mut random);
@@ -245,7 +249,8 @@ fn unusable_input() {
     );
     let p = [DVec3::ZERO, DVec3::NAN];
     assert!(polygon_inflections(&p, Dimension::Two).unwrap_err().to_string().contains("points[1]"));
-    let error = polygon_inflections_from(&p[..1], DVec3::ZERO).unwrap_err().to_string();
+    let error =
+        polygon_inflections_from(&p[..1], Dimension::Three, DVec3::ZERO).unwrap_err().to_string();
     assert!(error.contains("direction"), "{error}");
     assert_eq!(polygon_inflections(&p[..1], Dimension::Three).unwrap().count, 0);
     let line: Vec<DVec3> = (0..9).map(|i| DVec3::new(0.1, 0.7, -0.3) * f64::from(i)).collect();

@@ -282,7 +282,7 @@ fn a_direction_between_vectors_that_count_as_one_is_uncertain() {
     let points = points.map(DVec3::from);
     let most = polygon_inflections(&points, Dimension::Three).unwrap();
     let direction = DVec3::new(-5.188553199020691e-14, 0.0, -1.0);
-    let seen = polygon_inflections_from(&points, direction).unwrap();
+    let seen = polygon_inflections_from(&points, Dimension::Three, direction).unwrap();
     assert!(!seen.exact || seen.count <= most.count, "{most:?} {seen:?}");
 }
 
@@ -379,7 +379,7 @@ fn directions_that_count_as_one_are_uncertain() {
     assert_eq!([1e-8, 1e-10, 0.0].map(seen), [true, false, true]);
     let seen = |turn: f64| {
         let points = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [2.0, turn, 0.0]].map(DVec3::from);
-        polygon_inflections_from(&points, DVec3::X).unwrap().exact
+        polygon_inflections_from(&points, Dimension::Three, DVec3::X).unwrap().exact
     };
     assert_eq!([0.5, 1e-4, 1e-8].map(seen), [true, true, false]);
 }

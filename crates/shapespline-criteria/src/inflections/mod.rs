@@ -21,7 +21,7 @@ mod walk;
 use std::ops::ControlFlow;
 
 use glam::DVec3;
-use shapespline_geometry::{Dimension, InputError, PiecewiseBezier, normalize};
+use shapespline_geometry::{Coordinates, Dimension, InputError, PiecewiseBezier, normalize};
 
 use self::{
     sequence::{NOISE, STRAIGHT, Sequence, along, from_beside, hidden_from_beside, lies_in},
@@ -68,9 +68,9 @@ pub fn polygon_inflections_with(
     go_on: &(dyn Fn() -> ControlFlow<()> + Sync),
 ) -> Result<Option<InflectionCount>, InputError> {
     if dimension == Dimension::Two {
-        return polygon_inflections_from(points, DVec3::Z).map(Some);
+        return polygon_inflections_from(points, dimension, DVec3::Z).map(Some);
     }
-    let turns = turns(points)?;
+    let turns = turns(points, dimension)?;
     let sequence = Sequence::of_vectors(turns.iter().copied());
     let seen = |direction: DVec3| InflectionCount {
         count: changes(&turns, direction),
@@ -89,10 +89,11 @@ const NONE: InflectionCount = InflectionCount { count: 0, direction: DVec3::Z, e
 /// Points that are not finite, repeated neighbours, a direction of zero.
 pub fn polygon_inflections_from(
     points: &[DVec3],
+    dimension: Dimension,
     direction: DVec3,
 ) -> Result<InflectionCount, InputError> {
     let direction = unit(direction)?;
-    let turns = turns(points)?;
+    let turns = turns(points, dimension)?;
     // Where the polygon hardly turns rounding may have turned the vector further than it leans; and from
     // between vectors that count as one (see `sweep`) one of them leans no further than this. A right
     // angle is one where the vector is known to be at it.
@@ -118,14 +119,15 @@ fn changes(turns: &[(DVec3, f64)], direction: DVec3) -> usize {
 }
 
 /// The unit vectors along `V_i`, where the polygon turns, with what rounding can have turned them by.
-fn turns(points: &[DVec3]) -> Result<Vec<(DVec3, f64)>, InputError> {
+fn turns(points: &[DVec3], dimension: Dimension) -> Result<Vec<(DVec3, f64)>, InputError> {
     if let Some(index) = points.iter().position(|p| !p.is_finite()) {
         let coordinates = points[index].to_array();
         let value = coordinates.into_iter().find(|x| !x.is_finite()).unwrap_or(f64::NAN);
         return Err(InputError::NotFinite { argument: "points", index, value });
     }
     if let Some(i) = points.windows(2).position(|w| w[0] == w[1]) {
-        return Err(InputError::RepeatedPoint { index: i + 1, value: points[i] });
+        let value = Coordinates { vector: points[i], dimension };
+        return Err(InputError::RepeatedPoint { index: i + 1, value });
     }
     let chords: Vec<DVec3> = points.windows(2).map(|w| normalize(w[1] - w[0])).collect();
     let turn = |w: &[DVec3]| w[0].cross(w[1]);

@@ -22,7 +22,9 @@ pub(super) fn run(data: &[u8]) {
             Err(error) => return readable(&error),
         };
         assert!(most.count <= n.saturating_sub(3), "{most:?} of {n} points");
-        compare(&mut bytes, planar, most, &points, |w| polygon_inflections_from(&points, w));
+        compare(&mut bytes, planar, most, &points, |w| {
+            polygon_inflections_from(&points, dimension, w)
+        });
     } else if let Some(curve) = piecewise(&mut bytes, planar) {
         let most = curve_inflections(&curve);
         compare(&mut bytes, planar, most, &curve, |w| curve_inflections_from(&curve, w));
