@@ -11,6 +11,8 @@ import shapespline as ss
 STRATEGIES = ("nussp", "growth", "fairest")
 #: the families of curves that must pass the same checks
 FAMILIES = (ss.NuSpline, ss.TensionSpline, ss.CatmullRom)
+#: what Karavelas & Kaklis and Gautam ask of a segment: they leave out Manni's (i.3) at the nodes
+PAPERS = ("convexity", "inflection", "torsion", "coplanarity", "collinearity")
 
 
 @dataclass(frozen=True)

@@ -23,7 +23,7 @@ Derivative = Callable[[Array, int, str], Array]
 #: ``None`` (zero curvature), ``"periodic"``, or the two end tangents.
 Boundary = str | tuple[npt.ArrayLike, npt.ArrayLike] | None
 
-CRITERIA = ("convexity", "inflection", "torsion", "coplanarity", "collinearity")
+CRITERIA = ("convexity", "inflection", "turning", "torsion", "coplanarity", "collinearity")
 # Derivatives of a cubic lose a few dozen units in the last place before they arrive here.
 ROUNDING = 256 * np.finfo(float).eps
 
@@ -39,6 +39,7 @@ class Polygon:
     torsion: Array  #: Γ̂ = det[l, l, l] on the segments, zero where coplanar
     turning: Array  #: P̂·P̂' on the segments, zero where perpendicular to tolerance
     straight: npt.NDArray[np.bool_]  #: nodes where the collinearity criterion applies
+    closed: bool  #: whether the last node is the first
 
 
 @dataclass(frozen=True)
@@ -106,7 +107,7 @@ def data_polygon(
     straight = (norm(binormals) == 0.0) & (dot(chords[:-1], chords[1:]) > 0.0)
     if boundary is None:
         straight[[0, -1]] = False
-    return Polygon(chords, lengths, spacing, binormals, torsion, turning, straight)
+    return Polygon(chords, lengths, spacing, binormals, torsion, turning, straight, closed)
 
 
 def applicable(
@@ -128,6 +129,7 @@ def applicable(
     return {
         "convexity": polygon.turning > 0,
         "inflection": polygon.turning < 0,
+        "turning": (sizes[:-1] > 0) | (sizes[1:] > 0),
         "torsion": polygon.torsion != 0,
         "coplanarity": solid & (polygon.torsion == 0) & bent & agree & (polygon.turning != 0),
         "collinearity": polygon.straight[:-1] | polygon.straight[1:],
@@ -222,6 +224,43 @@ def inflection(polygon: Polygon, s: Samples) -> npt.NDArray[np.bool_]:
     return bad
 
 
+def turning(polygon: Polygon, s: Samples, tolerance: float) -> npt.NDArray[np.bool_]:
+    """Find where a segment bends the wrong way at one of its nodes, or its tangent is not between.
+
+    Manni 2001, (i.3): (ω·P_j)(P_i·P_j) > 0 at node i for j = i−1, i, i+1 where P_i·P_j ≠ 0; and
+    Gautam, (12.1): seen along P_i the tangent lies between the chords. All on this segment's side
+    of the node; the chord beside is left to the segment there where that has the same tangent.
+    """
+    nodes = polygon.binormals
+    beside = (nodes[-2], nodes[1]) if polygon.closed else (np.zeros(3), np.zeros(3))
+    nodes = np.vstack([beside[0], nodes, beside[1]])
+    count = len(polygon.torsion)
+    bad = np.zeros(count, dtype=bool)
+    for node, sample in ((0, 0), (1, -1)):
+        at = slice(node, node + count)
+        own = nodes[1:-1][at]
+        omega, first = s.omega[:, sample], s.first[:, sample]
+        for other in (nodes[:-2][at], own, nodes[2:][at]):
+            cosine = dot(own, other)
+            asked = np.abs(cosine) > tolerance * norm(own) * norm(other)
+            noise = s.omega_error[:, 0] * norm(other) + ROUNDING * norm(omega)
+            bad |= asked & (np.sign(cosine) * dot(omega, other) < -noise)
+        before, after = polygon.chords[:-1][at], polygon.chords[1:][at]
+        turns = [np.cross(before, first), np.cross(first, after)]
+        noise = s.first_error[:, 0] * norm(own) + ROUNDING * norm(first)
+        outside = [(norm(own) > 0) & (dot(turn, own) < -noise) for turn in turns]
+        bad |= outside[1 - node]
+        if count > 1:
+            other = np.roll(s.first[:, -1 - sample], -1 if node else 1, axis=0)
+            # Curves of other libraries are sampled a hair beside the point on its left.
+            parts = norm(np.cross(first, other)) > 1e-6 * norm(first) * norm(other)
+            corner = parts | (dot(first, other) <= 0)
+            if not polygon.closed:
+                corner[-1 if node else 0] = False
+            bad |= corner & outside[node]
+    return bad
+
+
 def torsion(polygon: Polygon, s: Samples) -> npt.NDArray[np.bool_]:
     """Find where the torsion's sign is not that of the discrete torsion (2.4)."""
     sign = np.sign(polygon.torsion)[:, None]
@@ -294,6 +333,7 @@ def shape_by_sampling(
     found = {
         "convexity": convexity(polygon, s),
         "inflection": inflection(polygon, s),
+        "turning": turning(polygon, s, tolerance),
         "torsion": torsion(polygon, s),
         "coplanarity": coplanarity(polygon, s, coplanarity_sine),
         "collinearity": collinearity(polygon, s, collinearity_sine),

@@ -24,7 +24,7 @@ def test_gm_feature_line_tension():
 
 
 def test_gm_feature_line_violations_of_the_c2_cubic():
-    report = cases.gm_line().fit().check()
+    report = cases.gm_line().fit().check(cases.PAPERS)
     assert not report.ok
     assert from_one(report.violations) == {
         ("torsion", 2),

@@ -174,7 +174,7 @@ def test_outside_the_curve_goes_on_smoothly_or_around():
 def test_published_reduction_on_the_gm_line(step):
     """Specification, section 2: one reduction for ρ = 0.5, six for ρ = 0.9."""
     case = replace(cases.gm_line(), family=ss.TensionSpline)
-    assert len(case.fit().check().violations) == 4
+    assert len(case.fit().check(cases.PAPERS).violations) == 4
     curve = case.preserve(strategy="reduction", step=step)
     reductions = {0.5: 1, 0.9: 6}[step]
     assert curve.diagnostics.iterations == reductions + 1

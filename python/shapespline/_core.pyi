@@ -49,7 +49,14 @@ __all__ = [
 _Floats = NDArray[np.float64]
 _Side = Literal["left", "right"]
 _Criterion = Literal[
-    "convexity", "inflection", "torsion", "coplanarity", "collinearity", "global-convexity"
+    "convexity",
+    "inflection",
+    "turning",
+    "torsion",
+    "coplanarity",
+    "collinearity",
+    "global-convexity",
+    "regular",
 ]
 _Boundary = Literal["zero-curvature", "natural", "periodic", "circular"]
 _Strategy = Literal["nussp", "growth", "fairest", "reduction"]
@@ -129,9 +136,9 @@ class SpaceCurve:
         self,
         criteria: _Criterion | Iterable[_Criterion] | None = None,
         *,
-        coplanarity: float = 0.2,
-        collinearity: float = 0.2,
-        tolerance: float = 1e-9,
+        coplanarity: float | None = None,
+        collinearity: float | None = None,
+        tolerance: float | None = None,
     ) -> ShapeReport: ...
     def _discrete_torsion(self) -> _Floats: ...
     def __copy__(self) -> SpaceCurve: ...
@@ -404,9 +411,9 @@ def _check_shape(
     parameters: _Parametrization | float | ArrayLike | None,
     boundary: _Boundary | Tangents | None,
     criteria: _Criterion | Iterable[_Criterion] | None,
-    coplanarity: float,
-    collinearity: float,
-    tolerance: float,
+    coplanarity: float | None,
+    collinearity: float | None,
+    tolerance: float | None,
 ) -> ShapeReport: ...
 def _curve_inflections(
     curve: PiecewiseBezier, direction: ArrayLike | None
@@ -421,8 +428,7 @@ def _polygon_shape(
     tolerance: float,
 ) -> dict[str, Any]: ...
 
-_Continuation = Literal["linear", "clip", "periodic"] | bool
-_Extrapolate = _Continuation | tuple[_Continuation, _Continuation] | None
+_Extrapolate = Literal["linear", "clip"] | bool | None
 
 @disjoint_base
 class PiecewisePolynomial:
@@ -433,8 +439,6 @@ class PiecewisePolynomial:
     def axis(self) -> int: ...
     @property
     def degree(self) -> int: ...
-    @property
-    def extrapolate(self) -> str | bool | tuple[str | bool, str | bool]: ...
     def __call__(
         self, x: ArrayLike, nu: int = 0, extrapolate: _Extrapolate = None
     ) -> float | _Floats: ...
@@ -447,7 +451,6 @@ class PiecewisePolynomial:
     def solve(
         self, y: float, extrapolate: _Extrapolate = None
     ) -> NDArray[np.float64 | np.object_]: ...
-    def _bernstein(self) -> _Floats: ...
     def to_bpoly(self) -> BPoly: ...
     def to_ppoly(self) -> PPoly: ...
     def __copy__(self) -> Self: ...
@@ -481,8 +484,8 @@ class MonotoneQuartic(MonotoneSpline):
         axis: int = 0,
         *,
         slopes: Literal["fritsch-butland"] | ArrayLike = "fritsch-butland",
-        shape: float | tuple[ArrayLike, ArrayLike] = 1.0,
-        extrapolate: _Extrapolate = "linear",
+        shape: float | tuple[ArrayLike, ArrayLike] = 3.0,
+        extrapolate: _Extrapolate = None,
     ) -> MonotoneQuartic: ...
 
 @final
@@ -495,10 +498,8 @@ class MonotoneQuintic(MonotoneSpline):
         *,
         slopes: Literal["optimal", "fritsch-butland"] | ArrayLike = "optimal",
         fairness: Literal["bending", "parametric"] = "bending",
-        extrapolate: _Extrapolate = "linear",
+        extrapolate: _Extrapolate = None,
     ) -> MonotoneQuintic: ...
-    @property
-    def fairness(self) -> Literal["bending", "parametric"]: ...
 
 @final
 class MonotoneDiagnostics:
@@ -534,10 +535,6 @@ class MonotoneDiagnostics:
 @disjoint_base
 class PiecewiseRows:
     def __new__(cls) -> Self: ...
-    @property
-    def x(self) -> _Floats: ...
-    @property
-    def extrapolate(self) -> str | bool | tuple[str | bool, str | bool]: ...
     def __call__(
         self,
         x: ArrayLike,
@@ -553,8 +550,6 @@ class PiecewiseRows:
     def integrate(
         self, a: ArrayLike, b: ArrayLike, extrapolate: _Extrapolate = None
     ) -> _Floats: ...
-    def roots(self, extrapolate: _Extrapolate = None) -> NDArray[np.object_]: ...
-    def solve(self, y: ArrayLike, extrapolate: _Extrapolate = None) -> NDArray[np.object_]: ...
     def __copy__(self) -> Self: ...
     def __deepcopy__(self, _memo: object) -> Self: ...
     def __reduce__(self) -> tuple[object, tuple[bytes]]: ...
@@ -564,14 +559,6 @@ class MonotoneRows(PiecewiseRows):
     def __new__(cls) -> Self: ...
     def __getitem__(self, row: int, /) -> MonotoneQuintic | MonotoneQuartic: ...
     def inverse(self, y: ArrayLike, *, offsets: ArrayLike | None = None) -> _Floats: ...
-    @property
-    def y(self) -> _Floats: ...
-    @property
-    def slopes(self) -> _Floats: ...
-    @property
-    def second_derivatives(self) -> _Floats: ...
-    @property
-    def fairness(self) -> Literal["bending", "parametric"] | None: ...
     @property
     def bending_energy(self) -> _Floats: ...
     @property
@@ -584,9 +571,9 @@ def fit_many_monotone(
     *,
     offsets: ArrayLike | None = None,
     slopes: Literal["optimal", "fritsch-butland"] | ArrayLike | None = None,
-    fairness: Literal["bending", "parametric"] | None = None,
-    shape: float | tuple[ArrayLike, ArrayLike] | None = None,
-    extrapolate: _Extrapolate = "linear",
+    fairness: Literal["bending", "parametric"] = "bending",
+    shape: float | tuple[ArrayLike, ArrayLike] = 3.0,
+    extrapolate: _Extrapolate = None,
 ) -> MonotoneRows: ...
 def bezier_like(
     degree: Literal[3, 4, 5],

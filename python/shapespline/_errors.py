@@ -69,7 +69,7 @@ class ConvergenceError(RuntimeError):
     ...     ss.NuSpline.shape_preserving(points, "uniform", max_iterations=1)
     ... except ss.ConvergenceError as error:
     ...     print(len(error.report.violations), error.curve.tension)
-    4 [0. 0. 0. 0. 0.]
+    6 [0. 0. 0. 0. 0.]
     """
 
     curve: SpaceCurve

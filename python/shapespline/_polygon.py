@@ -55,7 +55,7 @@ class PolygonShape:
     >>> import shapespline as ss
     >>> shape = ss.polygon_shape([[0, 0], [1, 1], [2, 0], [3, 1]])
     >>> shape.extent, shape.calls
-    ('plane', ((), ('inflection',), ()))
+    ('plane', (('turning',), ('inflection', 'turning'), ('turning',)))
     """
 
     points: Floats
@@ -85,7 +85,7 @@ class PolygonShape:
         --------
         >>> import shapespline as ss
         >>> ss.polygon_shape([[0, 0], [1, 1], [2, 0], [3, 1]]).counts()
-        {'inflection': 1}
+        {'turning': 3, 'inflection': 1}
         """
         counts: dict[str, int] = {}
         for names in self.calls:
@@ -173,7 +173,7 @@ def polygon_shape(
     >>> import shapespline as ss
     >>> shape = ss.polygon_shape([[0, 0, 0], [1, 0, 0], [1, 1, 0], [1, 1, 1], [2, 1, 1]])
     >>> shape.calls[1]
-    ('torsion',)
+    ('turning', 'torsion')
     >>> shape.torsion[1:3]
     array([1., 1.])
     """

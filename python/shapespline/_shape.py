@@ -38,9 +38,9 @@ def check_shape(
     parameters: _Parametrization | float | ArrayLike | None = None,
     boundary: _Boundary | Tangents | None = None,
     criteria: _Criterion | Iterable[_Criterion] | None = None,
-    coplanarity: float = 0.2,
-    collinearity: float = 0.2,
-    tolerance: float = 1e-9,
+    coplanarity: float | None = None,
+    collinearity: float | None = None,
+    tolerance: float | None = None,
 ) -> ShapeReport:
     """Check whether a curve, whoever made it, keeps the shape of the points it passes through.
 
@@ -63,15 +63,17 @@ def check_shape(
         last point is the first and the curve goes on there in the direction it began with, and else
         has zero curvature, so that the ends ask for neither convexity nor inflection.
     criteria : str or iterable of str, optional
-        Any of ``"convexity"``, ``"inflection"``, ``"torsion"``, ``"coplanarity"``,
-        ``"collinearity"`` and ``"global-convexity"``; default all but the last.
-    coplanarity, collinearity : float
+        Any of ``"convexity"``, ``"inflection"``, ``"turning"``, ``"torsion"``, ``"coplanarity"``,
+        ``"collinearity"``, ``"global-convexity"`` and ``"regular"``; default all but the last two.
+        Whether the curve is regular, γ' ≠ 0, is asked in any case, and listed where it is not.
+    coplanarity, collinearity : float, optional
         ε₁ and ε₀ in (0, 1]: sine of the largest angle between binormal and plane normal where four
-        points lie in a plane, and between tangent and line where three lie on a line.
-    tolerance : float
+        points lie in a plane, and between tangent and line where three lie on a line. Default 0.2.
+    tolerance : float, optional
         In [0, 1): points whose turning angle has a smaller sine count as collinear, and four whose
         unit chords span a smaller volume as coplanar. The curve may pass the points at this
-        distance over their extent (1e-9 at least).
+        distance over their extent (1e-9 at least). Default 1e-9. A shape-preserving curve of this
+        module through its own points has its own defaults: the options that it was fitted with.
 
     Returns
     -------

@@ -154,12 +154,15 @@ def _add_check(commands: argparse._SubParsersAction[Parser]) -> None:
         help="check that a function y(x) rises and falls as its data do (default where CURVE.json "
         "says so)",
     )
-    known = "convexity, inflection, torsion, coplanarity, collinearity, global-convexity"
+    known = (
+        "convexity, inflection, turning, torsion, coplanarity, collinearity, global-convexity, "
+        "regular"
+    )
     parser.add_argument(
         "--criteria",
         type=names,
         metavar="NAME,…",
-        help=f"any of {known} (default: all but the last)",
+        help=f"any of {known} (default: all but the last two)",
     )
     parser.add_argument(
         "--boundary",

@@ -1,32 +1,58 @@
 //! The largest handles that keep the shape of a segment, in closed form.
 //!
 //! Bounds are on the factors of the full legs `a, c` of a segment: handles strictly below both keep
-//! convexity or inflection, and collinearity (for the derivation see the crate's page). Infinite where
-//! nothing bounds.
+//! convexity or inflection, turning, and collinearity (for the derivation see the crate's page). Infinite
+//! where nothing bounds.
 
 use shapespline_criteria::{Calls, Criterion};
 use shapespline_geometry::{DVec3, length};
 
-/// The calls that [`of_signs`] has bounds for: convexity, of which global convexity follows, and
-/// inflection.
-pub(crate) const SIGNS: Calls =
-    Calls::CONVEXITY.and(Calls::GLOBAL_CONVEXITY).and(Calls::INFLECTION);
+/// What is asked of `ω` along the binormal vectors at both nodes of a segment, at both: convexity, of which
+/// global convexity follows, and inflection.
+const BETWEEN: Calls =
+    Calls::CONVEXITY.and(Calls::GLOBAL_CONVEXITY).and(Calls::INFLECTION).and(Calls::TURNING_PAIR);
 
-/// What convexity and inflection ask for; legs and chord near one in size, binormal vectors of unit
-/// chords. Without branches.
-#[inline(always)]
-pub(crate) fn of_signs([a, c]: [DVec3; 2], chord: DVec3, binormals: [DVec3; 2]) -> [f64; 2] {
-    let [mut p, mut q] = [f64::INFINITY; 2];
-    let (x, first, last) = (a.cross(c), a.cross(chord), chord.cross(c));
-    for n in binormals {
-        // (αP − qX)·n and (βP' − pX)·n must keep the signs they have at q = p = 0. Where X·n has
-        // the other sign, or none, they do.
-        let across = 1.0 / x.dot(n);
-        let (on_q, on_p) = (first.dot(n) * across, last.dot(n) * across);
-        q = if (on_q > 0.0) & (on_q < q) { on_q } else { q };
-        p = if (on_p > 0.0) & (on_p < p) { on_p } else { p };
+/// The least of some bounds, as a fraction: one division in the end instead of one each.
+struct Least {
+    numerator: f64,
+    denominator: f64,
+}
+
+impl Least {
+    const NONE: Self = Self { numerator: 1.0, denominator: 0.0 };
+
+    /// With `value − factor·rate` to keep the sign it has at zero, if that is asked. Where `rate` has the
+    /// other sign, or none, it does.
+    #[inline(always)]
+    fn and(self, asked: bool, value: f64, rate: f64) -> Self {
+        let (numerator, denominator) = (value.abs(), rate.abs());
+        let less = numerator * self.denominator < self.numerator * denominator;
+        if asked & (value * rate > 0.0) & less { Self { numerator, denominator } } else { self }
     }
-    [p, q]
+}
+
+/// What convexity, inflection and turning ask for; legs and chord near one in size, binormal vectors of unit
+/// chords at the node before, at the two nodes, and at the node after. Without branches.
+#[inline(always)]
+pub(crate) fn of_signs(
+    calls: Calls,
+    [a, c]: [DVec3; 2],
+    chord: DVec3,
+    [before, p, q, after]: [DVec3; 4],
+) -> [f64; 2] {
+    let (x, first, last) = (a.cross(c), a.cross(chord), chord.cross(c));
+    let (xp, xq) = (x.dot(p), x.dot(q));
+    let between = calls.any(BETWEEN);
+    // (αP − qX)·n and (βP' − pX)·n must keep the signs they have at q = p = 0.
+    let on_q = Least::NONE
+        .and(between | calls.any(Calls::TURNING_AT_START), first.dot(p), xp)
+        .and(between, first.dot(q), xq)
+        .and(calls.any(Calls::TURNING_BEFORE), first.dot(before), x.dot(before));
+    let on_p = Least::NONE
+        .and(between | calls.any(Calls::TURNING_AT_END), last.dot(q), xq)
+        .and(between, last.dot(p), xp)
+        .and(calls.any(Calls::TURNING_AFTER), last.dot(after), x.dot(after));
+    [on_p, on_q].map(|least| least.numerator / least.denominator)
 }
 
 /// What collinearity asks for, given the unit chord; `cotangent` is that of the half angle of its cone.

@@ -41,7 +41,7 @@ pub struct HandleOptions {
 impl Default for HandleOptions {
     fn default() -> Self {
         Self {
-            criteria: Criteria::ALL,
+            criteria: Criteria::OF_FITS,
             tolerances: Tolerances::default(),
             safety: 0.9,
             continuity: Continuity::C1,

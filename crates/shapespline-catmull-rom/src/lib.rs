@@ -19,6 +19,10 @@
 //!   the middle condition is automatic: `4(αP_i − qX)·n (βP_{i+1} − pX)·n ≥ 4pq(X·n)²`. *Global*
 //!   convexity follows: its Bernstein coefficients `3A + 3C = 3p αP_i·n` and
 //!   `3B + 3C = 3q βP_{i+1}·n` do not even depend on the other handle.
+//! * Turning asks at node `i` for `ω(0)·n` of the sign of `P_i·n`, `n ∈ {P_{i−1}, P_i, P_{i+1}}`, and at node
+//!   `i+1` for `ω(1)·n` of that of `P_{i+1}·n`, `n ∈ {P_i, P_{i+1}, P_{i+2}}`. As `ω(0) = p(αP_i − qX)` has it
+//!   for `q = 0`, it holds exactly for `q < αP_i·n/(X·n)` wherever that is positive, and likewise for `p`: a
+//!   bound of the same form. The tangent lies between the chords as said above.
 //! * Collinearity at node `i` on the half segment after it (`a` along the line) holds when
 //!   `‖a‖ ≤ ‖L‖` and `c_∥ + ‖c_⊥‖ cot asin ε₀ < ‖L‖`. In the transverse and the parallel part of
 //!   `γ'` it asks `‖a‖(1−t)(1−3t) + 2‖L‖t(1−t) > K t(2−3t)` on `(0, ½]`, `K` the left side of the
@@ -28,8 +32,8 @@
 //!   to the handles is that a split one inflects away from the nodes, and planes known only to the
 //!   tolerance; there the tension search shortens them further ([`shapespline_search`]).
 //!
-//! **Cost.** O(N), local: a point moves the curve over two segments to either side, and shape is kept
-//! by a choice at the two nodes of each segment.
+//! **Cost.** O(N), local: a point moves the curve over two segments to either side, or four where handles
+//! are shortened, and shape is kept by a choice at the two nodes of each segment.
 //!
 //! Source: R. S. Gautam, *Shape preservation behavior of spline curves* ("paper 002"), section 14; the
 //! magnitudes are ours.

@@ -5,12 +5,12 @@
 
 use std::ops::Range;
 
-use shapespline_criteria::{Calls, Faults, StretchCalls, StretchChecker};
+use shapespline_criteria::{Calls, Criterion, Faults, StretchCalls, StretchChecker};
 use shapespline_geometry::{DVec3, DataPolygon, Lanes, Stretch, near_one};
 
 use crate::{
     Continuity, HandleOptions,
-    bounds::{SIGNS, has_lines, of_lines, of_signs},
+    bounds::{has_lines, of_lines, of_signs},
     handles::freed,
     tangents::{tangent, tangent_between},
 };
@@ -52,7 +52,7 @@ pub(crate) struct Found {
     /// The segments that fail, ascending.
     pub(crate) faults: Vec<(usize, Faults)>,
     /// How many segments each criterion applies to.
-    pub(crate) applicable: [usize; 6],
+    pub(crate) applicable: [usize; Criterion::COUNT],
     /// Whether some legs are not finite, or leave no room for sums of them.
     pub(crate) cramped: bool,
 }
@@ -66,7 +66,7 @@ impl Found {
         self
     }
 
-    fn count(&mut self, applicable: [usize; 6]) {
+    fn count(&mut self, applicable: [usize; Criterion::COUNT]) {
         for (sum, count) in self.applicable.iter_mut().zip(applicable) {
             *sum += count;
         }
@@ -136,24 +136,24 @@ impl StretchHandles {
         let Self { stretch, calls, first, last, at_start, at_end, .. } = self;
         let (chords, binormals) = (stretch.chords(), stretch.binormals());
         let legs = |j: usize| [first.get(j), last.get(j)];
-        let nodes = |j: usize| [binormals.get(j - 1), binormals.get(j)];
         let safety = options.safety;
         if stretch.is_ordinary() {
-            for j in 0..stretch.less(2) {
-                let j = j + 1;
-                let bounds = of_signs(legs(j), chords.get(j), nodes(j));
-                [at_start[j], at_end[j]] = limits(calls[j], bounds, safety);
+            for j in 0..stretch.less(4) {
+                let around = [0, 1, 2, 3].map(|k| binormals.get(j + k));
+                let bounds = of_signs(calls[j + 2], legs(j + 2), chords.get(j + 2), around);
+                [at_start[j + 2], at_end[j + 2]] = limits(bounds, safety);
             }
         } else {
-            for j in 1..=stretch.less(2) {
-                let (legs, chord) = near_one(legs(j), chords.get(j));
-                let bounds = of_signs(legs, chord, nodes(j));
-                [at_start[j], at_end[j]] = limits(calls[j], bounds, safety);
+            for j in 0..stretch.less(4) {
+                let around = [0, 1, 2, 3].map(|k| binormals.get(j + k));
+                let (legs, chord) = near_one(legs(j + 2), chords.get(j + 2));
+                let bounds = of_signs(calls[j + 2], legs, chord, around);
+                [at_start[j + 2], at_end[j + 2]] = limits(bounds, safety);
             }
         }
         let sine = options.tolerances.collinearity;
         let cotangent = ((1.0 - sine) * (1.0 + sine)).sqrt() / sine;
-        for j in (1..=stretch.less(2)).filter(|&j| has_lines(calls[j])) {
+        for j in (2..stretch.less(2)).filter(|&j| has_lines(calls[j])) {
             let direction = stretch.directions().get(j);
             let [p, q] = of_lines(calls[j], legs(j), chords.get(j), direction, cotangent);
             at_start[j] = at_start[j].min(safety * p);
@@ -173,8 +173,8 @@ impl StretchHandles {
     /// both where they have to be one.
     fn join(&mut self, continuity: Continuity) {
         let Self { stretch, calls, at_start, at_end, .. } = self;
-        for j in 0..stretch.less(3) {
-            let j = j + 1;
+        for j in 0..stretch.less(5) {
+            let j = j + 2;
             let (q, p) = (at_end[j], at_start[j + 1]);
             // In an inflecting coplanar segment the legs decide where it inflects: one factor a node.
             let one = continuity == Continuity::C1
@@ -215,14 +215,10 @@ fn smaller(a: f64, b: f64) -> f64 {
     if b < a { b } else { a }
 }
 
-/// The factors that bounds by signs allow, where the calls ask for signs.
+/// The factors that bounds allow.
 #[inline(always)]
-fn limits(calls: Calls, bounds: [f64; 2], safety: f64) -> [f64; 2] {
-    let limit = |bound: f64| {
-        let limit = safety * bound;
-        if calls.any(SIGNS) & (limit < 1.0) { limit } else { 1.0 }
-    };
-    [limit(bounds[0]), limit(bounds[1])]
+fn limits(bounds: [f64; 2], safety: f64) -> [f64; 2] {
+    bounds.map(|bound| if safety * bound < 1.0 { safety * bound } else { 1.0 })
 }
 
 /// The places at the end of which the first and the last node of an open polygon lie.

@@ -15,9 +15,16 @@ const BLOCK: usize = 4096;
 /// The first segments that are asked whether the polygon is planar: most that are not say so at once.
 const FIRST: usize = 4;
 
+/// The bits of [`Calls`] that say how the binormal vectors of a pair of nodes lie to each other; those of
+/// the pair before and after the segment's own stand two and four places further on.
+const ALIKE: u32 = 1 << 11;
+const APART: u32 = 1 << 12;
+const BEFORE: u32 = 2;
+const AFTER: u32 = 4;
+
 /// The conditions that a segment is asked to meet.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Calls(u16);
+pub struct Calls(u32);
 
 impl Calls {
     /// `P_m·P_{m+1} > 0`.
@@ -38,6 +45,30 @@ impl Calls {
     pub const LINE_AT_END: Self = Self(128);
     /// `P_m·P_{m+1} > 0` again: the conditions of Definition 3.16 beyond local convexity.
     pub const GLOBAL_CONVEXITY: Self = Self(256);
+    /// `P_m ≠ 0`: turning at the segment's first node.
+    pub const TURNING_AT_START: Self = Self(512);
+    /// `P_{m+1} ≠ 0`: turning at the segment's last node.
+    pub const TURNING_AT_END: Self = Self(1024);
+    /// `P_m·P_{m+1} > 0`: each node turns along the other's binormal vector as well.
+    pub(crate) const TURNS_ALIKE: Self = Self(ALIKE);
+    /// `P_m·P_{m+1} < 0`.
+    pub(crate) const TURNS_APART: Self = Self(APART);
+    /// The same of `P_{m−1}·P_m`, asked at the first node.
+    pub(crate) const BEFORE_ALIKE: Self = Self(ALIKE << BEFORE);
+    pub(crate) const BEFORE_APART: Self = Self(APART << BEFORE);
+    /// The same of `P_{m+1}·P_{m+2}`, asked at the last node.
+    pub(crate) const AFTER_ALIKE: Self = Self(ALIKE << AFTER);
+    pub(crate) const AFTER_APART: Self = Self(APART << AFTER);
+    /// Turning along the binormal vector of the segment's other node, at both.
+    pub const TURNING_PAIR: Self = Self::TURNS_ALIKE.and(Self::TURNS_APART);
+    /// Turning at the first node along the binormal vector of the node before it.
+    pub const TURNING_BEFORE: Self = Self::BEFORE_ALIKE.and(Self::BEFORE_APART);
+    /// Turning at the last node along the binormal vector of the node after it.
+    pub const TURNING_AFTER: Self = Self::AFTER_ALIKE.and(Self::AFTER_APART);
+    /// No criterion that is asked implies that the curve is regular.
+    pub const REGULAR: Self = Self(1 << 17);
+    /// The polygon doubles back on itself at a node of the segment. Asks for nothing.
+    const DOUBLING_BACK: Self = Self(1 << 18);
 
     /// Whether any call of `other` is among these.
     #[inline]
@@ -71,12 +102,24 @@ impl Calls {
         match criterion {
             Criterion::Convexity => Self::CONVEXITY,
             Criterion::Inflection => Self::INFLECTION,
+            Criterion::Turning => Self::TURNING_AT_START
+                .and(Self::TURNING_AT_END)
+                .and(Self::TURNING_PAIR)
+                .and(Self::TURNING_BEFORE)
+                .and(Self::TURNING_AFTER),
             Criterion::Torsion => Self::RIGHT_TORSION.and(Self::LEFT_TORSION),
             Criterion::Coplanarity => Self::COPLANARITY.and(Self::SPLIT_COPLANARITY),
             Criterion::Collinearity => Self::LINE_AT_START.and(Self::LINE_AT_END),
             Criterion::GlobalConvexity => Self::GLOBAL_CONVEXITY,
+            Criterion::Regular => Self::REGULAR,
         }
     }
+
+    /// The calls that imply a regular curve where they are met. A cubic that stops where its legs are
+    /// independent has none of them; else `ω` has a double root there, so along no vector is it positive
+    /// throughout, or does it change its sign once.
+    const IMPLY_REGULAR: Self =
+        Self::CONVEXITY.and(Self::INFLECTION).and(Self::RIGHT_TORSION).and(Self::LEFT_TORSION);
 
     /// The criteria that the calls belong to.
     #[must_use]
@@ -138,8 +181,8 @@ impl Calls {
         calls
     }
 
-    /// What the segments of a stretch call for, except at its first and its last place; nothing beyond
-    /// the ends of the polygon.
+    /// What the segments of a stretch call for, except at its first and its last two places; nothing
+    /// beyond the ends of the polygon.
     pub(crate) fn of_stretch(
         polygon: &DataPolygon,
         stretch: &Stretch,
@@ -154,43 +197,55 @@ impl Calls {
             sines[j] = binormals.get(j).length();
         }
         let planes = u64::from(wanted.any(Self::of(Criterion::Coplanarity)));
-        let mut special = [0; Stretch::ROOM];
+        let (mut signs, mut special) = ([0; Stretch::ROOM], [0; Stretch::ROOM]);
         let mut any = 0;
         for j in 0..stretch.less(2) {
             let [p, q] = [binormals.get(j), binormals.get(j + 1)];
             let (gamma, ends) = (p.dot(directions.get(j + 2)), [sines[j], sines[j + 1]]);
-            calls[j + 1] = Self(of_signs(gamma, p.dot(q), ends, zero));
+            signs[j + 1] = of_signs(gamma, p.dot(q), ends, zero);
             special[j + 1] = (planes & u64::from(gamma.abs() <= zero))
                 | u64::from(ends[0] <= zero)
                 | u64::from(ends[1] <= zero);
             any |= special[j + 1];
         }
-        let segments = stretch.segments(polygon);
-        for j in (1..segments.start).chain(segments.end..places - 1) {
-            (calls[j], special[j]) = (Self::default(), 0);
+        for j in 0..stretch.less(4) {
+            let beside = |j: usize, places: u32| (signs[j] & (ALIKE | APART)) << places;
+            calls[j + 2] = Self(signs[j + 2] | beside(j + 1, BEFORE) | beside(j + 3, AFTER));
         }
+        let segments = stretch.segments(polygon);
+        let inside = segments.start.max(2)..segments.end.min(places - 2);
         if any > 0 {
-            for j in (1..places - 1).filter(|&j| special[j] != 0) {
+            for j in inside.clone().filter(|&j| special[j] != 0) {
                 let (i, around) = (stretch.segment(polygon, j), [j - 1, j, j + 1]);
                 let around = around.map(|j| directions.get(j));
                 calls[j] = calls[j].and(of_zeros(polygon, i, around, calls[j], tolerances));
             }
         }
         // Last: whether a plane is asked for depends on a turn, asked for or not.
-        for calls in calls {
-            calls.0 &= wanted.0;
+        let excuse = if wanted.any(Self::REGULAR) { 0 } else { Self::DOUBLING_BACK.0 };
+        for calls in &mut calls[inside.clone()] {
+            let asked = calls.0 & wanted.0;
+            let spared = (asked & Self::IMPLY_REGULAR.0) | (calls.0 & excuse);
+            calls.0 = asked | if spared != 0 { 0 } else { Self::REGULAR.0 };
         }
+        calls[..inside.start].fill(Self::default());
+        calls[inside.end..].fill(Self::default());
     }
 
     /// How many segments call for each criterion, in the order of [`Criterion::ALL`].
-    pub(crate) fn count(calls: &[Self]) -> [usize; 6] {
-        let mut counts = [0; 6];
-        // Numbers as short as the calls add up several at once.
-        for calls in calls.chunks(BLOCK) {
+    pub(crate) fn count(calls: &[Self]) -> [usize; Criterion::COUNT] {
+        let mut counts = [0; Criterion::COUNT];
+        for calls in calls.chunks(Stretch::OWN) {
+            // Most criteria are asked of all segments of a stretch or of none.
+            let (all, some) =
+                calls.iter().fold((u32::MAX, 0), |(all, some), c| (all & c.0, some | c.0));
             for (count, criterion) in counts.iter_mut().zip(Criterion::ALL) {
                 let of = Self::of(criterion);
-                let found: u16 = calls.iter().map(|calls| u16::from(calls.any(of))).sum();
-                *count += usize::from(found);
+                *count += match (some & of.0, all & of.0) {
+                    (0, _) => 0,
+                    (_, 0) => calls.iter().filter(|calls| calls.any(of)).count(),
+                    _ => calls.len(),
+                };
             }
         }
         counts
@@ -204,7 +259,7 @@ impl Calls {
 
     /// The calls, for arithmetic on several segments at once.
     #[inline(always)]
-    pub(crate) fn bits(self) -> u16 {
+    pub(crate) fn bits(self) -> u32 {
         self.0
     }
 
@@ -231,14 +286,18 @@ fn all_stretches(
 /// What `Γ`, `P_m·P_{m+1}` and the sines of the turns call for. Without branches: most segments ask for
 /// nothing else.
 #[inline(always)]
-fn of_signs(gamma: f64, cosine: f64, sines: [f64; 2], zero: f64) -> u16 {
+fn of_signs(gamma: f64, cosine: f64, sines: [f64; 2], zero: f64) -> u32 {
+    const ALONG: Calls = Calls::CONVEXITY.and(Calls::GLOBAL_CONVEXITY).and(Calls::TURNS_ALIKE);
+    const AGAINST: Calls = Calls::INFLECTION.and(Calls::TURNS_APART);
     let call = |holds: bool, call: Calls| if holds { call.0 } else { 0 };
-    let turns = (sines[0] > zero) & (sines[1] > zero);
+    let [start, end] = sines.map(|sine| sine > zero);
     let small = zero * (sines[0] * sines[1]);
     call(gamma > zero, Calls::RIGHT_TORSION)
         | call(gamma < -zero, Calls::LEFT_TORSION)
-        | call(turns & (cosine > small), Calls::CONVEXITY.and(Calls::GLOBAL_CONVEXITY))
-        | call(turns & (cosine < -small), Calls::INFLECTION)
+        | call(start & end & (cosine > small), ALONG)
+        | call(start & end & (cosine < -small), AGAINST)
+        | call(start, Calls::TURNING_AT_START)
+        | call(end, Calls::TURNING_AT_END)
 }
 
 /// What a segment calls for where something is zero, beside what `of_signs` found.
@@ -261,7 +320,12 @@ fn of_zeros(
         }
     }
     for (side, call) in [Calls::LINE_AT_START, Calls::LINE_AT_END].into_iter().enumerate() {
-        if sines[side] <= tolerances.zero && chords[side].dot(chords[side + 1]) > 0.0 {
+        if sines[side] > tolerances.zero {
+            continue;
+        }
+        if chords[side].dot(chords[side + 1]) < 0.0 {
+            calls = calls.and(Calls::DOUBLING_BACK);
+        } else {
             // (5.39): with zero curvature the ends have no line of their own.
             let node = i + side;
             let free = polygon.boundary() == Boundary::ZeroCurvature

@@ -9,7 +9,7 @@ use crate::{
     Calls, Criteria, Criterion, Faults, Record, ShapeReport, StretchChecker, Tolerances,
     WindowChecker,
     faults::{Cones, Situation, faults},
-    margin,
+    margin, regular,
 };
 
 /// The shape criteria of one data polygon.
@@ -92,10 +92,12 @@ impl<'a> Checker<'a> {
         let margin = match criterion {
             Criterion::Convexity => margin::convexity(&s),
             Criterion::Inflection => margin::inflection(&s),
+            Criterion::Turning => margin::turning(&s, calls),
             Criterion::Torsion => margin::torsion(&s, calls),
             Criterion::Coplanarity => margin::coplanarity(&s, calls, &self.cones(segment)),
             Criterion::Collinearity => margin::collinearity(&s, calls, &self.cones(segment)),
             Criterion::GlobalConvexity => margin::global_convexity(&s),
+            Criterion::Regular => regular::margin(&s),
         };
         record.satisfied = !self.faults(segment, legs).any(Faults::of(criterion));
         record.margin = margin.value;
@@ -117,12 +119,21 @@ impl<'a> Checker<'a> {
     where
         L: Fn(usize) -> [DVec3; 2],
     {
+        self.report_with(faults, |i, criterion| self.record(i, legs(i), criterion))
+    }
+
+    /// The same, given the records.
+    pub(crate) fn report_with(
+        &self,
+        faults: &[(usize, Faults)],
+        record: impl Fn(usize, Criterion) -> Record,
+    ) -> ShapeReport {
         let mut report = self.blank_report();
         for &(i, faults) in faults {
             for criterion in Criterion::ALL {
                 if faults.any(Faults::of(criterion)) {
                     report.counts[criterion as usize].violated += 1;
-                    report.violations.push(self.record(i, legs(i), criterion));
+                    report.violations.push(record(i, criterion));
                 }
             }
         }
@@ -137,14 +148,15 @@ impl<'a> Checker<'a> {
 
     /// How many of the segments each criterion applies to, in the order of [`Criterion::ALL`].
     #[must_use]
-    pub fn applicable(&self, segments: Range<usize>) -> [usize; 6] {
+    pub fn applicable(&self, segments: Range<usize>) -> [usize; Criterion::COUNT] {
         Calls::count(&self.calls[segments])
     }
 
     #[inline]
     fn situation(&self, i: usize, legs: [DVec3; 2]) -> Situation {
         let [p, q] = self.polygon().binormals(i);
-        Situation::new(legs, self.polygon().chord(i), p, q)
+        let [before, after] = self.polygon().binormals_beside(i);
+        Situation::new(legs, self.polygon().chord(i), [before, p, q, after])
     }
 
     pub(crate) fn cones(&self, i: usize) -> Cones {
@@ -175,6 +187,7 @@ impl Faults {
                 Self::CONVEXITY_AT_START.and(Self::CONVEXITY_AT_END).and(Self::CONVEXITY_BETWEEN)
             }
             Criterion::Inflection => Self::INFLECTION_AT_START.and(Self::INFLECTION_AT_END),
+            Criterion::Turning => Self::TURNING_AT_START.and(Self::TURNING_AT_END),
             Criterion::Torsion => Self::TORSION,
             Criterion::Coplanarity => Self::COPLANARITY_AT_START
                 .and(Self::COPLANARITY_AT_END)
@@ -187,6 +200,7 @@ impl Faults {
                 .and(Self::LINE_BEFORE_END)
                 .and(Self::LINE_INSIDE_END),
             Criterion::GlobalConvexity => Self::GLOBAL_CONVEXITY,
+            Criterion::Regular => Self::NOT_REGULAR,
         }
     }
 }

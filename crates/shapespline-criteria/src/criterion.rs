@@ -11,6 +11,9 @@ pub enum Criterion {
     Convexity,
     /// The curve has exactly the inflection of the polygon.
     Inflection,
+    /// At every node the curve turns as the polygon does there and, as far as they have a common side,
+    /// beside it; and its tangent lies between the chords.
+    Turning,
     /// The curve twists as the polygon does.
     Torsion,
     /// Near a plane where four points lie in one.
@@ -20,18 +23,27 @@ pub enum Criterion {
     /// Convexity, and the curve seen along both binormal vectors neither turns past its own start nor
     /// crosses itself.
     GlobalConvexity,
+    /// The curve nowhere stops: its speed exceeds what rounding of it could be. Whether it is named or
+    /// not, this is asked wherever no other criterion implies it; but only if it is named also beside points
+    /// where the polygon doubles back on itself, at which it may be that no curve of a family can go on.
+    Regular,
 }
 
 impl Criterion {
     /// All criteria, in the order of reports: the default ones, then what has to be asked for.
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; Self::COUNT] = [
         Self::Convexity,
         Self::Inflection,
+        Self::Turning,
         Self::Torsion,
         Self::Coplanarity,
         Self::Collinearity,
         Self::GlobalConvexity,
+        Self::Regular,
     ];
+
+    /// How many there are.
+    pub const COUNT: usize = 8;
 
     /// The name users write.
     #[must_use]
@@ -39,10 +51,12 @@ impl Criterion {
         match self {
             Self::Convexity => "convexity",
             Self::Inflection => "inflection",
+            Self::Turning => "turning",
             Self::Torsion => "torsion",
             Self::Coplanarity => "coplanarity",
             Self::Collinearity => "collinearity",
             Self::GlobalConvexity => "global-convexity",
+            Self::Regular => "regular",
         }
     }
 
@@ -67,11 +81,13 @@ pub struct Criteria(u8);
 impl Criteria {
     /// No criterion.
     pub const NONE: Self = Self(0);
-    /// The default: all but global convexity, which asks more of a curve than the papers'
+    /// The default of a check: all but global convexity, which asks more of a curve than the papers'
     /// algorithms promise.
-    pub const ALL: Self = Self(0b1_1111);
-    /// Every criterion there is, global convexity included.
-    pub const EVERY: Self = Self(0b11_1111);
+    pub const ALL: Self = Self::EVERY.without(Criterion::GlobalConvexity);
+    /// The default of a fit: as [`Criteria::ALL`], but where the points double back the curve may stop.
+    pub const OF_FITS: Self = Self::ALL.without(Criterion::Regular);
+    /// Every criterion there is.
+    pub const EVERY: Self = Self(0b1111_1111);
 
     /// Whether the set holds a criterion.
     #[must_use]
@@ -83,6 +99,12 @@ impl Criteria {
     #[must_use]
     pub fn with(self, criterion: Criterion) -> Self {
         Self(self.0 | 1 << criterion as u8)
+    }
+
+    /// The set with one criterion less.
+    #[must_use]
+    pub const fn without(self, criterion: Criterion) -> Self {
+        Self(self.0 & !(1 << criterion as u8))
     }
 
     /// The criteria of the set.

@@ -8,6 +8,8 @@ use crate::{
     calls::separation_between,
     cone::{Quadratic, end_is_inside, inside, part},
     global::is_globally_convex,
+    regular::is_regular,
+    turning::turns,
 };
 
 /// The conditions that fail on a segment `m`, as the failure sets (5.40)–(5.57) of paper 001
@@ -52,6 +54,12 @@ impl Faults {
     pub const LINE_INSIDE_END: Self = Self(32768);
     /// Global convexity, anywhere on the segment.
     pub const GLOBAL_CONVEXITY: Self = Self(65536);
+    /// Turning, at node m.
+    pub const TURNING_AT_START: Self = Self(1 << 17);
+    /// Turning, at node m+1.
+    pub const TURNING_AT_END: Self = Self(1 << 18);
+    /// The curve stops somewhere on the segment.
+    pub const NOT_REGULAR: Self = Self(1 << 19);
 
     /// Whether nothing fails.
     #[inline]
@@ -94,22 +102,31 @@ pub(crate) struct Situation {
     /// Binormal vectors of unit chords at the two nodes.
     pub(crate) p: DVec3,
     pub(crate) q: DVec3,
+    /// Those at the nodes beside them.
+    pub(crate) before: DVec3,
+    pub(crate) after: DVec3,
 }
 
 impl Situation {
+    /// With the binormal vectors at the node before, at the two nodes of the segment, and at the node
+    /// after.
     #[inline]
-    pub(crate) fn new(legs: [DVec3; 2], chord: DVec3, p: DVec3, q: DVec3) -> Self {
+    pub(crate) fn new(legs: [DVec3; 2], chord: DVec3, binormals: [DVec3; 4]) -> Self {
         let (legs, chord) = near_one(legs, chord);
-        Self::of_scaled(legs, chord, p, q)
+        Self::of_scaled(legs, chord, binormals)
     }
 
     /// The same of legs and chord [near one](near_one) in size.
     #[inline(always)]
-    pub(crate) fn of_scaled([a, c]: [DVec3; 2], chord: DVec3, p: DVec3, q: DVec3) -> Self {
+    pub(crate) fn of_scaled(
+        [a, c]: [DVec3; 2],
+        chord: DVec3,
+        [before, p, q, after]: [DVec3; 4],
+    ) -> Self {
         // With b = L − a − c: a×b = a×L − a×c, b×c = L×c − a×c.
         let middle = a.cross(c);
         let omega = [a.cross(chord) - middle, middle, chord.cross(c) - middle];
-        Self { a, c, chord, omega, p, q }
+        Self { a, c, chord, omega, p, q, before, after }
     }
 
     /// `ω·n` as `[α, γ, β]` of Lemma 5.1.
@@ -185,8 +202,9 @@ pub(crate) const LINE_PART: f64 = 0.5;
 /// The calls that are not met beyond doubt: none, and the exact verdict is that there is no fault. A few
 /// signs without branches; where one of them says otherwise nothing is decided.
 #[inline(always)]
-pub(crate) fn doubtful(s: &Situation, calls: u16) -> u16 {
+pub(crate) fn doubtful(s: &Situation, calls: u32) -> u32 {
     let ([a0, g0, b0], [a1, g1, b1]) = (s.omega_along(s.p), s.omega_along(s.q));
+    let (before, after) = (s.omega[0].dot(s.before), s.omega[2].dot(s.after));
     let determinant = s.determinant();
     let met = |holds: bool, call: Calls| if holds { call.bits() } else { 0 };
     // A middle coefficient that is not negative needs no root.
@@ -195,6 +213,15 @@ pub(crate) fn doubtful(s: &Situation, calls: u16) -> u16 {
     let inflecting = start & (a1 < 0.0) & (b0 < 0.0);
     let met = met(convex, Calls::CONVEXITY)
         | met(inflecting, Calls::INFLECTION)
+        // (a×L)·P = (a×b)·P + (a×c)·P, and (L×c)·P likewise.
+        | met((a0 > 0.0) & (a0 + g0 > 0.0), Calls::TURNING_AT_START)
+        | met((b1 > 0.0) & (b1 + g1 > 0.0), Calls::TURNING_AT_END)
+        | met((a1 > 0.0) & (b0 > 0.0), Calls::TURNS_ALIKE)
+        | met((a1 < 0.0) & (b0 < 0.0), Calls::TURNS_APART)
+        | met(before > 0.0, Calls::BEFORE_ALIKE)
+        | met(before < 0.0, Calls::BEFORE_APART)
+        | met(after > 0.0, Calls::AFTER_ALIKE)
+        | met(after < 0.0, Calls::AFTER_APART)
         | met(determinant > 0.0, Calls::RIGHT_TORSION)
         | met(determinant < 0.0, Calls::LEFT_TORSION);
     calls & !met
@@ -210,10 +237,18 @@ pub(crate) fn faults(s: &Situation, calls: Calls, cones: impl FnOnce() -> Cones)
     faults
 }
 
-/// The faults of convexity, inflection and torsion.
+/// The faults of convexity, inflection, turning and torsion, and of a curve that stops.
 #[inline]
 pub(crate) fn sign_faults(s: &Situation, calls: Calls) -> Faults {
     let mut faults = Faults::default();
+    if calls.any(Calls::of(Criterion::Turning)) {
+        let [start, end] = turns(s, calls);
+        faults.add(Faults::TURNING_AT_START, !start);
+        faults.add(Faults::TURNING_AT_END, !end);
+    }
+    if calls.any(Calls::REGULAR) {
+        faults.add(Faults::NOT_REGULAR, !is_regular(s));
+    }
     if calls.any(Calls::CONVEXITY.and(Calls::INFLECTION)) {
         let ([a0, g0, b0], [a1, g1, b1]) = (s.omega_along(s.p), s.omega_along(s.q));
         if calls.any(Calls::CONVEXITY) {

@@ -4,9 +4,11 @@
 //! |---|---|
 //! | convexity | least of `ω·P_n` at the ends and of Lemma 5.1's middle condition, each over the sizes in it |
 //! | inflection | least of the four `ω·P_n` at the ends over their sizes, with the signs asked for |
+//! | turning | least of `ω·P_j` at the nodes and of the sines between tangent and chord, each over its size |
 //! | torsion | `±det[a, L, c] / (‖a‖‖L‖‖c‖)` |
 //! | coplanarity, collinearity | `ε` less the sine of the largest angle |
 //! | global convexity | least of the margin of convexity and of `(a×L)·P_n`, `(L×c)·P_n` over their sizes |
+//! | regular | least of the speed over what it would be if no legs cancelled |
 //!
 //! The size of `ω(0) = a×L − a×c` is `‖a‖(‖L‖ + ‖c‖)`, that of `ω(1)` likewise: what the products
 //! could be at most, not what they are. So a margin passes through zero where a plane curve is about
@@ -22,6 +24,7 @@ use crate::{
     cone::{Quadratic, inside, part},
     faults::{Cones, LINE_PART, Situation},
     global::chord_turns,
+    turning::conditions,
 };
 
 /// A margin and the local parameter where it is smallest.
@@ -86,6 +89,16 @@ pub(crate) fn inflection(s: &Situation) -> Margin {
     let along = |w: DVec3, n: DVec3, size: f64| ratio(w.dot(n.normalize_or_zero()), size);
     Margin { value: along(first, s.p, start).min(-along(first, s.q, start)), at: 0.0 }
         .least(Margin { value: (-along(last, s.p, end)).min(along(last, s.q, end)), at: 1.0 })
+}
+
+pub(crate) fn turning(s: &Situation, calls: Calls) -> Margin {
+    [0, 1]
+        .into_iter()
+        .flat_map(|end| {
+            let of = move |(value, size)| Margin { value: ratio(value, size), at: end as f64 };
+            conditions(s, calls, end).map(of)
+        })
+        .fold(Margin { value: f64::INFINITY, at: 0.0 }, Margin::least)
 }
 
 pub(crate) fn torsion(s: &Situation, calls: Calls) -> Margin {

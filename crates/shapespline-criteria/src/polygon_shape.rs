@@ -74,7 +74,7 @@ pub fn polygon_shape(polygon: &DataPolygon, tolerances: &Tolerances) -> PolygonS
         torsion: (0..n).map(torsion).collect(),
         calls: Calls::of_polygon(polygon, tolerances)
             .into_iter()
-            .map(|calls| calls.only(Criteria::ALL).criteria())
+            .map(|calls| calls.only(Criteria::OF_FITS).criteria())
             .collect(),
         binormals,
     }

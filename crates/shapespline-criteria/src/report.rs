@@ -53,7 +53,7 @@ pub struct ShapeReport {
     /// The criteria that were asked.
     pub criteria: Criteria,
     /// One count a criterion, in the order of [`Criterion::ALL`].
-    pub counts: [Count; 6],
+    pub counts: [Count; Criterion::COUNT],
     /// The violations, ascending by segment.
     pub violations: Vec<Record>,
     /// What stays open, ascending by segment.
@@ -64,7 +64,11 @@ impl ShapeReport {
     /// The report on a curve that violates nothing, given how many segments each criterion applies
     /// to (in the order of [`Criterion::ALL`]).
     #[must_use]
-    pub fn clean(segments: usize, criteria: Criteria, applicable: [usize; 6]) -> Self {
+    pub fn clean(
+        segments: usize,
+        criteria: Criteria,
+        applicable: [usize; Criterion::COUNT],
+    ) -> Self {
         let counts = applicable.map(|applicable| Count { violated: 0, applicable });
         Self { segments, criteria, counts, violations: Vec::new(), undecided: Vec::new() }
     }
@@ -73,6 +77,16 @@ impl ShapeReport {
     #[must_use]
     pub fn ok(&self) -> bool {
         self.violations.is_empty() && self.undecided.is_empty()
+    }
+
+    /// The criteria that there is something to say about: those that were asked, and regularity, which
+    /// always is, where it fails or stays open.
+    #[must_use]
+    pub fn listed(&self) -> Criteria {
+        let regular = Criterion::Regular;
+        let open = self.undecided.iter().any(|open| open.criterion == regular);
+        let stops = self.count(regular).violated > 0 || open;
+        if stops { self.criteria.with(regular) } else { self.criteria }
     }
 
     /// How often a criterion applies and is violated.
@@ -94,7 +108,7 @@ impl std::fmt::Display for ShapeReport {
         };
         writeln!(f, "{verdict} on {} segments", self.segments)?;
         writeln!(f, "{:<17}{:>10}{:>12}", "criterion", "violated", "applicable")?;
-        for criterion in self.criteria.iter() {
+        for criterion in self.listed().iter() {
             let count = self.count(criterion);
             writeln!(f, "{criterion:<17}{:>10}{:>12}", count.violated, count.applicable)?;
         }

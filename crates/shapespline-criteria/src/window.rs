@@ -5,7 +5,7 @@ use std::{cell::Cell, ops::Range};
 use rayon::prelude::*;
 use shapespline_geometry::{DVec3, DataPolygon, Lanes, Stretch};
 
-use crate::{Calls, Faults, StretchCalls, StretchChecker};
+use crate::{Calls, Criterion, Faults, StretchCalls, StretchChecker};
 
 /// Windows that are kept: a change of tension is felt over some 60 segments, in two windows or three.
 const KEPT: usize = 4;
@@ -87,11 +87,11 @@ impl<'a> WindowChecker<'a> {
 
     /// The segments that fail, ascending, and how many segments each criterion applies to: all that a
     /// report on a curve without faults says. Cost O(N), on all threads for long curves.
-    pub fn look<L>(&mut self, legs: L) -> (Vec<(usize, Faults)>, [usize; 6])
+    pub fn look<L>(&mut self, legs: L) -> (Vec<(usize, Faults)>, [usize; Criterion::COUNT])
     where
         L: Fn(usize) -> [DVec3; 2] + Sync,
     {
-        type Seen = (Vec<(usize, Faults)>, [usize; 6]);
+        type Seen = (Vec<(usize, Faults)>, [usize; Criterion::COUNT]);
         let look = |windows: &mut Self, segments: Range<usize>, (found, applicable): &mut Seen| {
             for part in parts(segments) {
                 let window = windows.window(part.start / Stretch::OWN);
@@ -186,7 +186,7 @@ impl<'a> WindowChecker<'a> {
 }
 
 /// Adds counts to others.
-fn add(sums: &mut [usize; 6], counts: [usize; 6]) {
+fn add(sums: &mut [usize; Criterion::COUNT], counts: [usize; Criterion::COUNT]) {
     sums.iter_mut().zip(counts).for_each(|(sum, count)| *sum += count);
 }
 

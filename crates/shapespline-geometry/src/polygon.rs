@@ -265,6 +265,19 @@ impl DataPolygon {
         [before.cross(own), own.cross(after)]
     }
 
+    /// The binormal vectors at the node before the first and at the node after the last node of a segment;
+    /// zero beyond the ends of an open polygon.
+    #[inline]
+    #[must_use]
+    pub fn binormals_beside(&self, segment: usize) -> [DVec3; 2] {
+        let n = self.segments();
+        let at = |node: Option<usize>| node.map_or(DVec3::ZERO, |node| self.binormal(node));
+        if self.is_closed() {
+            return [(segment + n - 1) % n, (segment + 2) % n].map(|node| self.binormal(node));
+        }
+        [at(segment.checked_sub(1)), at(Some(segment + 2).filter(|&node| node <= n))]
+    }
+
     /// The unit chords of a segment and its neighbours, `l_{i−1}, l_i, l_{i+1}` (with the stand-ins at
     /// the ends).
     #[inline]

@@ -52,11 +52,12 @@ impl Lanes {
     }
 }
 
-/// Consecutive segments of a polygon and two on either side: what local methods look at.
+/// Consecutive segments of a polygon and three on either side: what local methods look at.
 ///
-/// Place `j` stands for segment `start − 2 + j` of the polygon, and for the node at its end. On closed
+/// Place `j` stands for segment `start − 3 + j` of the polygon, and for the node at its end. On closed
 /// polygons indices wrap. The places beyond the ends of an open one hold copies of the end segment, but
-/// the direction next to it is the stand-in that [`DataPolygon::directions_around`] has there.
+/// the direction next to it is the stand-in that [`DataPolygon::directions_around`] has there, and nodes
+/// beyond the ends have no binormal vector.
 #[derive(Debug, Clone)]
 pub struct Stretch {
     start: usize,
@@ -84,7 +85,10 @@ impl Default for Stretch {
 
 impl Stretch {
     /// Segments that a stretch has on either side of its own.
-    pub const BESIDE: usize = 2;
+    ///
+    /// A criterion asks about the binormal vectors at the two nodes of a segment and at those beside them,
+    /// which takes two; what the segment before and after its own ask for takes one more.
+    pub const BESIDE: usize = 3;
 
     /// The most segments of its own that a stretch has: all that is worked on stays in the first cache.
     pub const OWN: usize = 64;
@@ -100,6 +104,11 @@ impl Stretch {
         self.find_directions(polygon);
         for j in 0..self.less(1) {
             self.binormals.set(j, self.directions.get(j).cross(self.directions.get(j + 1)));
+        }
+        // Open polygons: no chords meet beyond the first and the last node.
+        let inner = self.segments(polygon);
+        for j in (0..inner.start.saturating_sub(1)).chain(inner.end..self.places) {
+            self.binormals.set(j, DVec3::ZERO);
         }
     }
 
@@ -289,6 +298,8 @@ mod tests {
                             assert_eq!(around, polygon.directions_around(i));
                             let binormals = [j - 1, j].map(|j| stretch.binormals().get(j));
                             assert_eq!(binormals, polygon.binormals(i));
+                            let beside = [j - 2, j + 1].map(|j| stretch.binormals().get(j));
+                            assert_eq!(beside, polygon.binormals_beside(i));
                         }
                         for j in stretch.segments(&polygon) {
                             let i = stretch.segment(&polygon, j);

@@ -1,11 +1,14 @@
 //! `CatmullRom`: what is particular to Catmull–Rom curves.
 
 use pyo3::{PyClassInitializer, prelude::*, types::PyType};
-use shapespline::catmull_rom::{self, Continuity, HandleOptions};
+use shapespline::{
+    catmull_rom::{self, Continuity, HandleOptions},
+    criteria::Criteria,
+};
 
 use crate::{
     curve::SpaceCurve,
-    fit::{Data, Failure, build, preserve},
+    fit::{Data, Request, build, preserve},
     input::Points,
     options::{self, CriteriaNames, Ends, NodalTension, Parameters, tolerances},
 };
@@ -102,9 +105,9 @@ impl CatmullRom {
     /// boundary : {"natural", "zero-curvature", "periodic", "circular"} or Tangents
     ///     End conditions, as for `CatmullRom`.
     /// criteria : str or iterable of str, optional
-    ///     What to keep: any of ``"convexity"``, ``"inflection"``, ``"torsion"``, ``"coplanarity"``,
-    ///     ``"collinearity"`` and ``"global-convexity"``; default all but the last, which follows from
-    ///     the first.
+    ///     What to keep: any of ``"convexity"``, ``"inflection"``, ``"turning"``, ``"torsion"``,
+    ///     ``"coplanarity"``, ``"collinearity"``, ``"global-convexity"``, which follows from the first,
+    ///     and ``"regular"``; default all but the last two.
     /// safety : float
     ///     The part, in (0, 1), of each bound that a handle may reach.
     /// continuity : {"C1", "G1"}
@@ -149,7 +152,7 @@ impl CatmullRom {
             parameters=Parameters::CENTRIPETAL,
             *,
             boundary=Ends::ZERO_CURVATURE,
-            criteria=CriteriaNames::ALL,
+            criteria=CriteriaNames::DEFAULT,
             safety=0.9,
             continuity=Continuity::C1,
             coplanarity=0.2,
@@ -176,9 +179,9 @@ impl CatmullRom {
     ) -> PyResult<Py<PyAny>> {
         let data = Data::new(points, parameters, boundary)?;
         let (criteria, tolerances) =
-            (criteria.0, tolerances(coplanarity, collinearity, tolerance)?);
+            (criteria.or(Criteria::OF_FITS), tolerances(coplanarity, collinearity, tolerance)?);
         let options = HandleOptions { criteria, tolerances, safety, continuity };
-        preserve(class.py(), data, &Failure::of_handles(criteria, tolerances), |polygon, go_on| {
+        preserve(class.py(), data, &Request::of_handles(criteria, tolerances), |polygon, go_on| {
             catmull_rom::CatmullRom::shape_preserving_with(polygon, &options, &mut |_| go_on())
         })
     }

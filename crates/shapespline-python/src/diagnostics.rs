@@ -3,13 +3,18 @@
 use pyo3::prelude::*;
 use shapespline::search::{self, Phase, Status};
 
-use crate::pickle::{self, Kind, Reduced};
+use crate::{
+    asked::Asked,
+    pickle::{self, Kind, Reduced},
+};
 
 /// Diagnostics and history of the search that found a curve.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub(crate) struct Search {
     pub(crate) diagnostics: search::Diagnostics,
     pub(crate) history: Vec<search::Step>,
+    /// What it was asked for: what a check of the curve asks unless told otherwise.
+    pub(crate) asked: Asked,
 }
 
 /// Counts of the work that a shape-preserving fit took.

@@ -10,6 +10,7 @@ use shapespline::{
 };
 
 use crate::{
+    asked::Asked,
     curve::{Curve, Member, SpaceCurve},
     diagnostics::Search,
     error::{convergence_error, fit_error},
@@ -57,7 +58,13 @@ impl Searching {
     ) -> PyResult<SearchOptions> {
         let Self { criteria, strategy, step, max_iterations } = self;
         let tolerances = tolerances(coplanarity, collinearity, tolerance)?;
-        Ok(SearchOptions { criteria: criteria.0, tolerances, strategy, step, max_iterations })
+        Ok(SearchOptions {
+            criteria: criteria.or(Criteria::OF_FITS),
+            tolerances,
+            strategy,
+            step,
+            max_iterations,
+        })
     }
 }
 
@@ -76,40 +83,38 @@ pub(crate) fn build<C: Member>(
 pub(crate) fn preserve<C: Member>(
     py: Python<'_>,
     data: Data,
-    failure: &Failure,
+    request: &Request,
     search: impl FnOnce(DataPolygon, GoOn<'_>) -> Result<Fit<C>, FitError> + Send,
 ) -> PyResult<Py<PyAny>> {
     let size = data.points.len();
-    interruptible(py, size, |go_on| Ok(Made::searched(search(data.polygon()?, go_on)?)))?
-        .map_err(fit_error)?
-        .into_python(py, failure, None)
+    let fit = |go_on: GoOn<'_>| Ok(Made::searched(search(data.polygon()?, go_on)?, request));
+    interruptible(py, size, fit)?.map_err(fit_error)?.into_python(py, request, None)
 }
 
-/// What the report of a failure must know.
-pub(crate) struct Failure {
-    criteria: Criteria,
-    tolerances: Tolerances,
+/// What a shape-preserving fit is asked for.
+pub(crate) struct Request {
+    pub(crate) asked: Asked,
     /// What the caller can do where tension can rise no further.
     advice: &'static str,
 }
 
-impl From<&SearchOptions> for Failure {
+impl From<&SearchOptions> for Request {
     fn from(options: &SearchOptions) -> Self {
         let SearchOptions { criteria, tolerances, strategy, .. } = *options;
         let advice = match strategy {
             Strategy::Nussp | Strategy::Reduction => "use strategy=\"fairest\"",
             Strategy::Growth | Strategy::Fairest => ASK_FOR_LESS,
         };
-        Self { criteria, tolerances, advice }
+        Self { asked: Asked::of_fit(criteria, tolerances), advice }
     }
 }
 
 const ASK_FOR_LESS: &str = "widen coplanarity or collinearity, or leave out a criterion";
 
-impl Failure {
+impl Request {
     /// Of Catmull–Rom handles.
     pub(crate) fn of_handles(criteria: Criteria, tolerances: Tolerances) -> Self {
-        Self { criteria, tolerances, advice: ASK_FOR_LESS }
+        Self { asked: Asked::of_fit(criteria, tolerances), advice: ASK_FOR_LESS }
     }
 }
 
@@ -128,12 +133,12 @@ impl Made {
     }
 
     /// A curve that was searched for.
-    pub(crate) fn searched<C: Member>(fit: Fit<C>) -> Self {
+    pub(crate) fn searched<C: Member>(fit: Fit<C>, request: &Request) -> Self {
         let Fit { curve, outcome, report } = fit;
         let Outcome { diagnostics, history, .. } = outcome;
         let solved = diagnostics.status == Status::Solved;
         let unsolved = (!solved).then(|| Box::new((diagnostics, report)));
-        let search = Search { diagnostics, history };
+        let search = Search { diagnostics, history, asked: request.asked };
         Self { curve: SpaceCurve::of(Arc::new(curve), Some(search)), unsolved }
     }
 
@@ -142,7 +147,7 @@ impl Made {
     pub(crate) fn into_python(
         self,
         py: Python<'_>,
-        failure: &Failure,
+        request: &Request,
         index: Option<usize>,
     ) -> PyResult<Py<PyAny>> {
         let Some(unsolved) = self.unsolved else { return self.curve.into_python(py) };
@@ -159,12 +164,12 @@ impl Made {
              {} (this exception carries the last curve and its report)",
             report.segments,
             violations.join(", "),
-            if status == Status::IterationLimit { "raise max_iterations" } else { failure.advice },
+            if status == Status::IterationLimit { "raise max_iterations" } else { request.advice },
         );
         let curve: Arc<dyn Curve> = Arc::clone(&self.curve.curve);
         let report = curve.with_locations(report);
         let subject = Subject::Own(curve);
-        let report = ShapeReport::of(report, subject, failure.criteria, failure.tolerances);
+        let report = ShapeReport::of(report, subject, request.asked);
         let report = Py::new(py, report)?.into_any();
         Err(convergence_error(py, message, self.curve.into_python(py)?, report))
     }

@@ -10,6 +10,7 @@
 use mimalloc::MiMalloc;
 use pyo3::prelude::*;
 
+mod asked;
 mod catmull_rom;
 mod curve;
 mod diagnostics;

@@ -19,7 +19,7 @@ use shapespline::{
 
 use crate::{
     error::{curve_error, fit_error, input_error},
-    fit::{Failure, Made, Searching},
+    fit::{Made, Request, Searching},
     input::{Offsets, PointArray},
     options::{self, CriteriaNames, Ends, Method, Parameters},
     work::{GoOn, PARALLEL, interruptible, interruptible_each},
@@ -38,7 +38,7 @@ struct Rows<'py> {
 fn run<'py>(
     py: Python<'py>,
     rows: Rows<'py>,
-    failure: &Failure,
+    request: &Request,
     make: impl Fn(DataPolygon, GoOn<'_>) -> Result<Made, FitError> + Sync,
 ) -> PyResult<(Bound<'py, PyTuple>, Bound<'py, PyDict>)> {
     let Rows { points, offsets, parametrization, boundary, threads } = rows;
@@ -73,7 +73,7 @@ fn run<'py>(
     let (mut curves, errors) = (Vec::with_capacity(fits.len()), PyDict::new(py));
     for (k, fit) in fits.into_iter().enumerate() {
         let done = match fit {
-            Ok(Some(made)) => made.into_python(py, failure, Some(k)),
+            Ok(Some(made)) => made.into_python(py, request, Some(k)),
             // Interrupted: the exception has been raised above.
             Ok(None) => continue,
             Err(error) => Err(curve_error(k, &error)),
@@ -123,34 +123,34 @@ pub(crate) fn _fit_many<'py>(
         tolerance,
     )?;
     let (criteria, tolerances) = (search.criteria, search.tolerances);
-    let failure = match method {
-        Method::CatmullRom => Failure::of_handles(criteria, tolerances),
-        Method::Nu | Method::Tension => Failure::from(&search),
+    let request = match method {
+        Method::CatmullRom => Request::of_handles(criteria, tolerances),
+        Method::Nu | Method::Tension => Request::from(&search),
     };
     match method {
-        Method::Nu => run(py, rows, &failure, |polygon, ask| {
+        Method::Nu => run(py, rows, &request, |polygon, ask| {
             if !shape_preserving {
                 return nu::NuSpline::new(polygon, Tension::Uniform(tension)).map(Made::built);
             }
             nu::NuSpline::shape_preserving_with(polygon, &search, &mut |_| ask())
-                .map(Made::searched)
+                .map(|fit| Made::searched(fit, &request))
         }),
-        Method::Tension => run(py, rows, &failure, |polygon, ask| {
+        Method::Tension => run(py, rows, &request, |polygon, ask| {
             if !shape_preserving {
                 let scale = TangentScale::Uniform(tangent_scale);
                 return tension::TensionSpline::new(polygon, scale).map(Made::built);
             }
             tension::TensionSpline::shape_preserving_with(polygon, &search, &mut |_| ask())
-                .map(Made::searched)
+                .map(|fit| Made::searched(fit, &request))
         }),
-        Method::CatmullRom => run(py, rows, &failure, |polygon, ask| {
+        Method::CatmullRom => run(py, rows, &request, |polygon, ask| {
             if !shape_preserving {
                 let tension = Tension::Uniform(tension);
                 return catmull_rom::CatmullRom::new(polygon, tension, continuity).map(Made::built);
             }
             let options = HandleOptions { criteria, tolerances, safety, continuity };
             catmull_rom::CatmullRom::shape_preserving_with(polygon, &options, &mut |_| ask())
-                .map(Made::searched)
+                .map(|fit| Made::searched(fit, &request))
         }),
     }
 }

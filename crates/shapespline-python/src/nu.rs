@@ -5,7 +5,7 @@ use shapespline::nu::{self, Strategy};
 
 use crate::{
     curve::SpaceCurve,
-    fit::{Data, Failure, Searching, build, preserve},
+    fit::{Data, Request, Searching, build, preserve},
     input::Points,
     options::{self, CriteriaNames, Ends, NodalTension, Parameters},
 };
@@ -96,8 +96,9 @@ impl NuSpline {
     /// boundary : {"zero-curvature", "natural", "periodic", "circular"} or Tangents
     ///     End conditions, as for `NuSpline`.
     /// criteria : str or iterable of str, optional
-    ///     What to keep: any of ``"convexity"``, ``"inflection"``, ``"torsion"``, ``"coplanarity"``
-    ///     and ``"collinearity"``; default all of them.
+    ///     What to keep: any of ``"convexity"``, ``"inflection"``, ``"turning"``, ``"torsion"``,
+    ///     ``"coplanarity"``, ``"collinearity"``, ``"global-convexity"`` and ``"regular"``; default all
+    ///     but the last two.
     /// strategy : {"fairest", "growth", "nussp", "reduction"}
     ///     ``"nussp"`` adds ``step`` (the published algorithm); ``"growth"`` doubles the tension;
     ///     ``"fairest"`` doubles and then lowers every run of tension until none can be lowered by
@@ -150,7 +151,7 @@ impl NuSpline {
             parameters=Parameters::CHORDAL,
             *,
             boundary=Ends::ZERO_CURVATURE,
-            criteria=CriteriaNames::ALL,
+            criteria=CriteriaNames::DEFAULT,
             strategy=Strategy::Fairest,
             step=0.5,
             coplanarity=0.2,
@@ -183,7 +184,7 @@ impl NuSpline {
             collinearity,
             tolerance,
         )?;
-        preserve(class.py(), data, &Failure::from(&search), |polygon, go_on| {
+        preserve(class.py(), data, &Request::from(&search), |polygon, go_on| {
             nu::NuSpline::shape_preserving_with(polygon, &search, &mut |_| go_on())
         })
     }

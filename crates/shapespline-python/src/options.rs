@@ -128,11 +128,20 @@ pub(crate) fn safety(object: &Bound<'_, PyAny>) -> PyResult<f64> {
 pub(crate) fn coplanarity(object: &Bound<'_, PyAny>) -> PyResult<f64> {
     float("coplanarity", object)
 }
+pub(crate) fn optional_coplanarity(object: &Bound<'_, PyAny>) -> PyResult<Option<f64>> {
+    if object.is_none() { Ok(None) } else { coplanarity(object).map(Some) }
+}
 pub(crate) fn collinearity(object: &Bound<'_, PyAny>) -> PyResult<f64> {
     float("collinearity", object)
 }
+pub(crate) fn optional_collinearity(object: &Bound<'_, PyAny>) -> PyResult<Option<f64>> {
+    if object.is_none() { Ok(None) } else { collinearity(object).map(Some) }
+}
 pub(crate) fn tolerance(object: &Bound<'_, PyAny>) -> PyResult<f64> {
     float("tolerance", object)
+}
+pub(crate) fn optional_tolerance(object: &Bound<'_, PyAny>) -> PyResult<Option<f64>> {
+    if object.is_none() { Ok(None) } else { tolerance(object).map(Some) }
 }
 pub(crate) fn a(object: &Bound<'_, PyAny>) -> PyResult<Option<f64>> {
     end("a", object)
@@ -266,10 +275,15 @@ impl<'py> FromPyObject<'_, 'py> for Ends {
 }
 
 /// `criteria`: `None` for the default, a name, or any iterable of names.
-pub(crate) struct CriteriaNames(pub(crate) Criteria);
+pub(crate) struct CriteriaNames(Option<Criteria>);
 
 impl CriteriaNames {
-    pub(crate) const ALL: Self = Self(Criteria::ALL);
+    pub(crate) const DEFAULT: Self = Self(None);
+
+    /// The criteria that were named, or else the default.
+    pub(crate) fn or(self, default: Criteria) -> Criteria {
+        self.0.unwrap_or(default)
+    }
 
     fn one(name: &str) -> PyResult<Criterion> {
         Criterion::from_name(name).ok_or_else(|| {
@@ -285,10 +299,10 @@ impl<'py> FromPyObject<'_, 'py> for CriteriaNames {
 
     fn extract(object: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
         if object.is_none() {
-            return Ok(Self::ALL);
+            return Ok(Self::DEFAULT);
         }
         if let Some(name) = text(&object) {
-            return Ok(Self([Self::one(&name)?].into_iter().collect()));
+            return Ok(Self(Some([Self::one(&name)?].into_iter().collect())));
         }
         let wrong = |given: &Bound<'_, PyAny>| {
             PyTypeError::new_err(format!(
@@ -302,7 +316,7 @@ impl<'py> FromPyObject<'_, 'py> for CriteriaNames {
             let name = text(&item).ok_or_else(|| wrong(&item))?;
             criteria = criteria.with(Self::one(&name)?);
         }
-        Ok(Self(criteria))
+        Ok(Self(Some(criteria)))
     }
 }
 

@@ -143,8 +143,8 @@ pub(crate) fn _from_bytes<'py>(py: Python<'py>, data: &[u8]) -> PyResult<Bound<'
         }
         Kind::Report => {
             let subject = detached(py, size, || read_subject(&mut bytes))?;
-            let (report, criteria, tolerances) = whole(bytes)?;
-            ShapeReport::of(report, subject, criteria, tolerances).into_bound_py_any(py)
+            let (report, asked) = whole(bytes)?;
+            ShapeReport::of(report, subject, asked).into_bound_py_any(py)
         }
         Kind::PiecewiseBezier => {
             let curve = detached(py, size, || assemble(whole(bytes)?))?;
@@ -152,18 +152,18 @@ pub(crate) fn _from_bytes<'py>(py: Python<'py>, data: &[u8]) -> PyResult<Bound<'
         }
         Kind::Function => {
             let (layout, fits): (Layout, Fits) = detached(py, size, || whole(bytes))?;
-            if !(fits.is_sound() && fits.agree() && layout.is_of(fits.len())) {
+            if !(fits.is_sound() && fits.agree() && fits.len() == layout.columns()) {
                 return Err(damaged("lengths do not agree"));
             }
             let function = PiecewisePolynomial::of(fits, &Arc::new(layout));
             Ok(function.into_python(py)?.into_bound(py))
         }
         Kind::Rows => {
-            let (ragged, fits): (bool, Fits) = detached(py, size, || whole(bytes))?;
-            if !(fits.is_sound() && (ragged || fits.agree())) {
+            let fits: Fits = detached(py, size, || whole(bytes))?;
+            if !fits.is_sound() {
                 return Err(damaged("lengths do not agree"));
             }
-            Ok(PiecewiseRows::of(fits, ragged).into_python(py)?.into_bound(py))
+            Ok(PiecewiseRows::of(fits).into_python(py)?.into_bound(py))
         }
         Kind::Tangents => whole::<Tangents>(bytes)?.into_bound_py_any(py),
         Kind::ShapeRecord => whole::<ShapeRecord>(bytes)?.into_bound_py_any(py),
@@ -215,7 +215,7 @@ pub(crate) fn write_report(
             postcard::to_extend(&(polygon, parts(curve), interpolation), bytes)?
         }
     };
-    postcard::to_extend(&(&report.report, report.criteria, report.tolerances), bytes)
+    postcard::to_extend(&(&report.report, report.asked), bytes)
 }
 
 fn read_subject(bytes: &mut &[u8]) -> PyResult<Subject> {

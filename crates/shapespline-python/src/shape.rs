@@ -16,9 +16,10 @@ use shapespline::{
 };
 
 use crate::{
+    asked::{Asked, Given},
     error::{Value, input_error, invalid, must, subject_error},
     input::{Numbers, Points, numbers},
-    options::{self, CriteriaNames, Ends, Parameters, tolerances},
+    options::{self, CriteriaNames, Ends, Parameters},
     output::{vector, vectors},
     piecewise::PiecewiseBezier,
     report::{ShapeReport, Subject},
@@ -38,11 +39,12 @@ pub(crate) fn _check_shape(
     parameters: Option<Parameters>,
     boundary: Option<Ends>,
     criteria: CriteriaNames,
-    #[pyo3(from_py_with = options::coplanarity)] coplanarity: f64,
-    #[pyo3(from_py_with = options::collinearity)] collinearity: f64,
-    #[pyo3(from_py_with = options::tolerance)] tolerance: f64,
+    #[pyo3(from_py_with = options::optional_coplanarity)] coplanarity: Option<f64>,
+    #[pyo3(from_py_with = options::optional_collinearity)] collinearity: Option<f64>,
+    #[pyo3(from_py_with = options::optional_tolerance)] tolerance: Option<f64>,
 ) -> PyResult<ShapeReport> {
-    let tolerances = tolerances(coplanarity, collinearity, tolerance)?;
+    let asked = Given { criteria, coplanarity, collinearity, tolerance };
+    let asked = Asked::default().with(asked)?;
     let curve = Arc::clone(&curve.get().curve);
     let Points { points, dimension } = points;
     if dimension != curve.dimension() {
@@ -81,9 +83,9 @@ pub(crate) fn _check_shape(
         polygon(points, boundary)
     };
     let polygon = detached(py, count, make).map_err(input_error)?;
-    let interpolation = INTERPOLATION.max(tolerances.zero);
+    let interpolation = INTERPOLATION.max(asked.tolerances.zero);
     let subject = Subject::Other { polygon: Arc::new(polygon), curve, interpolation };
-    ShapeReport::make(py, subject, criteria.0, tolerances)
+    ShapeReport::make(py, subject, asked)
 }
 
 /// Whether the last point is the first, and the curve goes on there in the direction it began with.

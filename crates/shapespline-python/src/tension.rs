@@ -14,7 +14,7 @@ use shapespline::{
 use crate::{
     curve::SpaceCurve,
     error::must,
-    fit::{Data, Failure, Searching, build, preserve},
+    fit::{Data, Request, Searching, build, preserve},
     input::{Numbers, Points, Query, array, numbers},
     options::{self, CriteriaNames, Ends, Method, Parameters},
 };
@@ -173,8 +173,9 @@ impl TensionSpline {
     /// boundary : {"natural", "zero-curvature", "periodic", "circular"} or Tangents
     ///     End conditions, as for `TensionSpline`.
     /// criteria : str or iterable of str, optional
-    ///     What to keep: any of ``"convexity"``, ``"inflection"``, ``"torsion"``, ``"coplanarity"``,
-    ///     ``"collinearity"`` and ``"global-convexity"``; default all but the last.
+    ///     What to keep: any of ``"convexity"``, ``"inflection"``, ``"turning"``, ``"torsion"``,
+    ///     ``"coplanarity"``, ``"collinearity"``, ``"global-convexity"`` and ``"regular"``; default all
+    ///     but the last two.
     /// strategy : {"fairest", "growth", "reduction", "nussp"}
     ///     ``"reduction"`` multiplies λ by ``step`` (the published algorithm); ``"growth"`` doubles
     ///     1/λ − 1; ``"fairest"`` doubles and then lowers every run of tension until none can be lowered
@@ -227,7 +228,7 @@ impl TensionSpline {
             parameters=Parameters::CHORDAL,
             *,
             boundary=Ends::ZERO_CURVATURE,
-            criteria=CriteriaNames::ALL,
+            criteria=CriteriaNames::DEFAULT,
             strategy=Strategy::Fairest,
             step=None,
             coplanarity=0.2,
@@ -261,7 +262,7 @@ impl TensionSpline {
             collinearity,
             tolerance,
         )?;
-        preserve(class.py(), data, &Failure::from(&search), |polygon, go_on| {
+        preserve(class.py(), data, &Request::from(&search), |polygon, go_on| {
             tension::TensionSpline::shape_preserving_with(polygon, &search, &mut |_| go_on())
         })
     }

@@ -9,6 +9,9 @@ use crate::{TensionFamily, runs::Run, state::State};
 /// No nodes can be lowered by more than this part of their tension when relaxation ends.
 const RESOLUTION: f64 = 0.01;
 
+/// Nodes that hold each other back are lowered to this part of it.
+const FINE: f64 = RESOLUTION / 8.0;
+
 /// Nodes that are lowered together.
 pub(crate) struct Nodes {
     /// The nodes, ascending, and the tension they began with.
@@ -17,6 +20,8 @@ pub(crate) struct Nodes {
     scaled: Vec<(usize, f64)>,
     /// The factor that is set.
     set: f64,
+    /// The part of their tension that they are lowered to.
+    resolution: f64,
 }
 
 impl Nodes {
@@ -29,7 +34,12 @@ impl Nodes {
         let nodes = runs.into_iter().flat_map(|run| run.nodes(tension.len()));
         let mut full: Vec<_> = nodes.map(|i| (i, tension[i])).collect();
         full.sort_unstable_by_key(|node| node.0);
-        Self { scaled: Vec::with_capacity(full.len()), full, set: 1.0 }
+        Self { scaled: Vec::with_capacity(full.len()), full, set: 1.0, resolution: RESOLUTION }
+    }
+
+    /// The same, to be lowered to a smaller part of their tension.
+    pub(crate) fn finely(self) -> Self {
+        Self { resolution: FINE, ..self }
     }
 
     /// The changes that bring the nodes to a factor of their tension.
@@ -58,7 +68,7 @@ impl Nodes {
             }
         }
         let (mut breaks, mut keeps) = (0.0, 1.0);
-        while keeps - breaks > RESOLUTION * keeps && !state.stopped {
+        while keeps - breaks > self.resolution * keeps && !state.stopped {
             let middle = 0.5 * (breaks + keeps);
             let least = looks.then(|| self.bisect_by_looks(state, &mut breaks, keeps)).flatten();
             let trial = least.unwrap_or(middle);
@@ -84,7 +94,7 @@ impl Nodes {
         keeps: f64,
     ) -> Option<f64> {
         let mut seems = keeps;
-        while seems - *breaks > RESOLUTION * seems {
+        while seems - *breaks > self.resolution * seems {
             let trial = 0.5 * (*breaks + seems);
             if trial <= *breaks || trial >= seems {
                 break;

@@ -68,7 +68,7 @@ pub struct SearchOptions {
 impl Default for SearchOptions {
     fn default() -> Self {
         Self {
-            criteria: Criteria::ALL,
+            criteria: Criteria::OF_FITS,
             tolerances: Tolerances::default(),
             strategy: Strategy::default(),
             step: 0.5,

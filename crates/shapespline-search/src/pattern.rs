@@ -17,8 +17,9 @@ impl Pattern {
     ///
     /// A fault between the nodes, of global convexity, of torsion, or of a split coplanarity needs all
     /// four nodes; one at node m needs its neighbours m−1 and m+1 (Lemma 5.4), one at node m+1 needs m and m+2; the
-    /// inflection conditions are conditions at the nodes. A fault of collinearity away from its node
-    /// needs the two nodes of that segment, or all three nodes around (Lemma 5.9).
+    /// inflection conditions are conditions at the nodes, and so is turning (paper 000, Lemma 4.2). A fault
+    /// of collinearity away from its node needs the two nodes of that segment, or all three nodes around
+    /// (Lemma 5.9). A segment on which the curve stops needs shorter legs: its two nodes.
     #[must_use]
     pub fn of(faults: Faults) -> Self {
         const ALL: Faults = Faults::CONVEXITY_BETWEEN
@@ -28,14 +29,17 @@ impl Pattern {
             .and(Faults::COPLANARITY_SPLIT);
         const AT_START: Faults = Faults::CONVEXITY_AT_START
             .and(Faults::INFLECTION_AT_START)
+            .and(Faults::TURNING_AT_START)
             .and(Faults::COPLANARITY_AT_START)
             .and(Faults::LINE_AT_START);
         const AT_END: Faults = Faults::CONVEXITY_AT_END
             .and(Faults::INFLECTION_AT_END)
+            .and(Faults::TURNING_AT_END)
             .and(Faults::COPLANARITY_AT_END)
             .and(Faults::LINE_AT_END);
         // Both nodes of the segment, whichever of its ends the line belongs to.
-        const FAR: Faults = Faults::LINE_AFTER_START.and(Faults::LINE_BEFORE_END);
+        const FAR: Faults =
+            Faults::LINE_AFTER_START.and(Faults::LINE_BEFORE_END).and(Faults::NOT_REGULAR);
 
         let (all, start, end) = (faults.any(ALL), faults.any(AT_START), faults.any(AT_END));
         let far = faults.any(FAR);

@@ -63,7 +63,19 @@ fn sweep_over<F: TensionFamily>(
         }
         let group = tied(state, all, open, r);
         let mut nodes = Nodes::of(state, group.iter().map(|&g| &all[g]));
-        let lowered = nodes.lower(state, group.len() == all.len())?;
+        let mut lowered = nodes.lower(state, group.len() == all.len())?;
+        if lowered == 0 && group.len() > 1 {
+            // One of them may be all that holds back the others; or each the others by a little.
+            let mut free = Vec::new();
+            for &g in &group {
+                if Nodes::of(state, [&all[g]]).can_be_lowered(state)? {
+                    free.push(&all[g]);
+                }
+            }
+            if !free.is_empty() {
+                lowered = Nodes::of(state, free).finely().lower(state, false)?;
+            }
+        }
         // Of several with one factor, one may have held back the others.
         group.iter().for_each(|&g| again[g] = group.len() > 1);
         if lowered > 0 {

@@ -78,7 +78,9 @@ fn theorem_13_13_as_printed_has_the_opposite_sign() {
 #[test]
 fn margins_are_continuous_and_change_sign_with_the_verdict() {
     let mut random = Random::new(8);
-    let mut crossings = [0; 6];
+    // All but regularity, which holds everywhere but on curves that stop: its margin is never negative.
+    let crossed = Criterion::ALL.into_iter().filter(|&c| c != Criterion::Regular);
+    let mut crossings = [0; Criterion::COUNT];
     for k in 0..3000 {
         let (polygon, from) = case(k, &mut random);
         let (_, to) = case(k, &mut random);
@@ -90,7 +92,7 @@ fn margins_are_continuous_and_change_sign_with_the_verdict() {
         });
         let checker = every(&polygon);
         let at = |s: f64| [from[0].lerp(to[0], s), from[1].lerp(to[1], s)];
-        for criterion in Criterion::ALL {
+        for criterion in crossed.clone() {
             let record = |s: f64| checker.record(SEGMENT, at(s), criterion);
             if !record(0.0).applicable || record(0.0).satisfied == record(1.0).satisfied {
                 continue;
@@ -112,7 +114,7 @@ fn margins_are_continuous_and_change_sign_with_the_verdict() {
             crossings[criterion as usize] += usize::from(!jumps);
         }
     }
-    assert!(crossings.iter().all(|&n| n > 30), "{crossings:?}");
+    assert!(crossed.into_iter().all(|c| crossings[c as usize] > 30), "{crossings:?}");
 }
 
 #[test]
@@ -157,7 +159,9 @@ fn verdicts_and_margins_do_not_depend_on_the_frame() {
 #[test]
 fn a_search_keeps_global_convexity_when_asked() {
     let mut random = Random::new(13);
-    let options = SearchOptions { criteria: Criteria::EVERY, ..SearchOptions::default() };
+    // Some of the polygons double back on a line.
+    let criteria = Criteria::EVERY.without(Criterion::Regular);
+    let options = SearchOptions { criteria, ..SearchOptions::default() };
     let mut mended = 0;
     for kind in Kind::ALL {
         for _ in 0..30 {
@@ -170,7 +174,7 @@ fn a_search_keeps_global_convexity_when_asked() {
             let before = plain.check(Criteria::EVERY, Tolerances::default()).unwrap();
             let fit = NuSpline::shape_preserving(polygon, &options).unwrap();
             assert_eq!(fit.outcome.diagnostics.status, Status::Solved, "{kind:?}");
-            let report = fit.curve.check(Criteria::EVERY, Tolerances::default()).unwrap();
+            let report = fit.curve.check(criteria, Tolerances::default()).unwrap();
             assert!(report.ok(), "{kind:?}\n{report}");
             mended += before.count(Criterion::GlobalConvexity).violated;
         }

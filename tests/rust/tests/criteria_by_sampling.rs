@@ -22,7 +22,9 @@ type Sample = (f64, [DVec3; 4]);
 
 /// Sampled margin: positive where the samples say that the criterion holds; its size says how close
 /// to deciding otherwise the samples are.
-fn sampled(polygon: &DataPolygon, curve: &Samples, criterion: Criterion) -> f64 {
+///
+/// `corners`: whether the curve has corners at the ends of the segment, where turning asks more.
+fn sampled(polygon: &DataPolygon, curve: &Samples, criterion: Criterion, corners: bool) -> f64 {
     let points = polygon.points();
     let l = |i: usize| points[i + 1] - points[i];
     let m = SEGMENT;
@@ -65,7 +67,7 @@ fn sampled(polygon: &DataPolygon, curve: &Samples, criterion: Criterion) -> f64 
                 both[0].min(both[1])
             };
             let later = (1..=last).map(margin).fold(f64::INFINITY, f64::min);
-            later.min(sampled(polygon, curve, Criterion::Convexity) * size) / size
+            later.min(sampled(polygon, curve, Criterion::Convexity, corners) * size) / size
         }
         Criterion::Torsion => {
             let gamma = l(m - 1).cross(l(m)).dot(l(m + 1)).signum();
@@ -87,6 +89,27 @@ fn sampled(polygon: &DataPolygon, curve: &Samples, criterion: Criterion) -> f64 
             let holds = once && ends[0] > 0.0 && ends[3] > 0.0;
             if holds { margin.abs() } else { -margin.abs() }
         }
+        Criterion::Turning => {
+            // Manni's (i.3) on this segment's side of both nodes, and the tangent beside the chord.
+            let unit = |i: usize| {
+                let sine = l(i - 1).normalize().cross(l(i).normalize());
+                if sine.length() < 1e-9 { DVec3::ZERO } else { sine.normalize() }
+            };
+            let turns = |node: usize, d: &[DVec3; 4], chord_first: bool| {
+                if unit(node) == DVec3::ZERO {
+                    return 1.0;
+                }
+                let around = [node - 1, node, node + 1].map(|j| (unit(j), unit(node).dot(unit(j))));
+                let asked = around.into_iter().filter(|(_, cosine)| cosine.abs() > 1e-9);
+                let turned = asked.map(|(n, cosine)| omega(d).dot(n) * cosine.signum() / size);
+                let before = l(node - 1).normalize().cross(d[1]).dot(unit(node)) / d[1].length();
+                let after = d[1].cross(l(node).normalize()).dot(unit(node)) / d[1].length();
+                let own = if chord_first { before } else { after };
+                turned.fold(if corners { before.min(after) } else { own }, f64::min)
+            };
+            turns(m, &curve[0].1, false).min(turns(m + 1, &curve[last].1, true))
+        }
+        Criterion::Regular => least(&|d| d[1].length()) / (-least(&|d| -d[1].length())),
         Criterion::Coplanarity => {
             let [p, q] = normals;
             if p.dot(q) > 0.0 {
@@ -164,10 +187,10 @@ fn cubic_samples([b0, b1, b2, b3]: [DVec3; 4], around: Option<f64>) -> Samples {
 
 #[derive(Default)]
 struct Tally {
-    holds: [AtomicUsize; 6],
-    fails: [AtomicUsize; 6],
-    closely: [AtomicUsize; 6],
-    exceptions: [AtomicUsize; 6],
+    holds: [AtomicUsize; Criterion::COUNT],
+    fails: [AtomicUsize; Criterion::COUNT],
+    closely: [AtomicUsize; Criterion::COUNT],
+    exceptions: [AtomicUsize; Criterion::COUNT],
     undecided: AtomicUsize,
 }
 
@@ -196,9 +219,10 @@ impl Tally {
 
     fn print(&self, title: &str, least: usize) {
         println!("{title}: {} undecided", self.undecided.load(Ordering::Relaxed));
-        for criterion in Criterion::ALL {
-            let get =
-                |column: &[AtomicUsize; 6]| column[criterion as usize].load(Ordering::Relaxed);
+        for criterion in Criterion::ALL.into_iter().filter(|&c| c != Criterion::Regular) {
+            let get = |column: &[AtomicUsize; Criterion::COUNT]| {
+                column[criterion as usize].load(Ordering::Relaxed)
+            };
             let counts = [&self.holds, &self.fails, &self.closely, &self.exceptions].map(get);
             let [holds, fails, closely, exceptions] = counts;
             println!(
@@ -224,8 +248,8 @@ fn cubic_segments_agree_with_dense_sampling() {
         let control = [start, start + legs[0], end - legs[1], end];
         let curve = cubic_samples(control, None);
         let margin = |criterion, around: Option<f64>| match around {
-            None => sampled(&polygon, &curve, criterion),
-            Some(_) => sampled(&polygon, &cubic_samples(control, around), criterion),
+            None => sampled(&polygon, &curve, criterion, false),
+            Some(_) => sampled(&polygon, &cubic_samples(control, around), criterion, false),
         };
         for criterion in Criterion::ALL {
             let record = checker.record(SEGMENT, legs, criterion);
@@ -285,8 +309,8 @@ fn quintics_agree_with_dense_sampling() {
         let checker = checker.unwrap();
         let curve = samples(&control, None);
         let margin = |criterion, around: Option<f64>| match around {
-            None => sampled(&polygon, &curve, criterion),
-            Some(_) => sampled(&polygon, &samples(&control, around), criterion),
+            None => sampled(&polygon, &curve, criterion, true),
+            Some(_) => sampled(&polygon, &samples(&control, around), criterion, true),
         };
         for criterion in Criterion::ALL {
             let record = checker.record(SEGMENT, criterion);

@@ -29,7 +29,7 @@ fn every_kind_of_polygon_is_solved_and_fairest_needs_no_more_tension_than_growth
             for fit in [&growth, &fairest] {
                 let name = format!("{kind:?} {case}: {:?}", fit.outcome.diagnostics);
                 assert_eq!(fit.outcome.diagnostics.status, Status::Solved, "{name}");
-                let report = fit.curve.check(Criteria::ALL, Tolerances::default()).unwrap();
+                let report = fit.curve.check(Criteria::OF_FITS, Tolerances::default()).unwrap();
                 assert!(report.ok(), "{name}\n{report}");
                 assert_eq!(report, fit.report);
             }
@@ -105,7 +105,7 @@ fn no_run_of_a_fairest_tension_can_be_lowered_by_one_percent() {
             let mut tension = fit.curve.tension().to_vec();
             tension[run.clone()].iter_mut().for_each(|t| *t *= 0.99);
             let lower = NuSpline::new(polygon.clone(), Tension::Nodes(&tension)).unwrap();
-            let report = lower.check(Criteria::ALL, Tolerances::default()).unwrap();
+            let report = lower.check(Criteria::OF_FITS, Tolerances::default()).unwrap();
             assert!(!report.ok(), "run {run:?} of {:?} can be lowered", fit.curve.tension());
             tested += 1;
         }
@@ -120,7 +120,7 @@ fn a_limit_of_iterations_is_reported_with_the_last_curve() {
     assert_eq!(fit.outcome.diagnostics.status, Status::IterationLimit);
     assert_eq!(fit.outcome.diagnostics.iterations, 2);
     assert!(!fit.report.ok());
-    assert_eq!(fit.report, fit.curve.check(Criteria::ALL, Tolerances::default()).unwrap());
+    assert_eq!(fit.report, fit.curve.check(Criteria::OF_FITS, Tolerances::default()).unwrap());
 }
 
 /// End tangents of another unit altogether, and a chord that doubles back: the last raise changes the first

@@ -4,7 +4,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 use shapespline_geometry::{DataPolygon, InputError, PiecewiseBezier, length, polynomial::Sign};
 
-use super::{Question, Segment, decide, measure};
+use super::{Question, Segment, corner::joined, decide, measure};
 use crate::{
     Calls, Checker, Criteria, Criterion, Notes, Record, ShapeReport, Tolerances, Undecided,
     notes::notes,
@@ -118,7 +118,9 @@ impl<'a> CurveChecker<'a> {
     #[must_use]
     pub fn report(&self) -> ShapeReport {
         if self.is_cubic() {
-            return self.checker.report(|i| self.end_legs(i));
+            let faults = self.checker.all_faults(|i| self.end_legs(i));
+            let faults = joined(faults, self.corner_faults());
+            return self.checker.report_with(&faults, |i, criterion| self.record(i, criterion));
         }
         let of = |i: usize| (i, self.check_segment(i));
         let found: Vec<(usize, Found)> = (0..self.checker.calls().len())
@@ -143,7 +145,7 @@ impl<'a> CurveChecker<'a> {
     #[must_use]
     pub fn record(&self, segment: usize, criterion: Criterion) -> Record {
         if let Some(legs) = self.legs(segment) {
-            return self.checker.record(segment, legs, criterion);
+            return self.with_corners(self.checker.record(segment, legs, criterion));
         }
         let mut record = Record {
             segment,
@@ -155,7 +157,7 @@ impl<'a> CurveChecker<'a> {
         };
         let Some(question) = self.question(segment, criterion) else { return record };
         let pieces = self.segment(segment);
-        let sign = decide(&pieces, &question);
+        let sign = self.verdict(segment, &pieces, &question);
         let measured = measure(&pieces, &question);
         record.applicable = true;
         record.satisfied = sign == Sign::Positive;
@@ -167,7 +169,7 @@ impl<'a> CurveChecker<'a> {
             Sign::Undecided { from, to } => (0.0, 0.5 * (from + to)),
         };
         (record.margin, record.location) = (margin, self.parameter(segment, at));
-        record
+        self.with_corners(record)
     }
 
     /// What stays open of a criterion on a segment.
@@ -177,7 +179,7 @@ impl<'a> CurveChecker<'a> {
             return None;
         }
         let question = self.question(segment, criterion)?;
-        match decide(&self.segment(segment), &question) {
+        match self.verdict(segment, &self.segment(segment), &question) {
             Sign::Undecided { from, to } => {
                 let interval = [self.parameter(segment, from), self.parameter(segment, to)];
                 Some(Undecided { segment, criterion, interval })
@@ -201,7 +203,7 @@ impl<'a> CurveChecker<'a> {
         let pieces = self.segment(i);
         for criterion in calls.criteria().iter() {
             let Some(question) = self.question(i, criterion) else { continue };
-            match decide(&pieces, &question) {
+            match self.verdict(i, &pieces, &question) {
                 Sign::Positive => {}
                 Sign::Fails { .. } => found.records.push(self.record(i, criterion)),
                 Sign::Undecided { from, to } => {
@@ -213,12 +215,28 @@ impl<'a> CurveChecker<'a> {
         found
     }
 
+    /// The verdict on a segment, corners at its ends included.
+    fn verdict(&self, i: usize, pieces: &Segment, question: &Question) -> Sign {
+        let sign = decide(pieces, question);
+        if question.criterion != Criterion::Turning {
+            return sign;
+        }
+        let corner = |end: usize| self.beyond_chord(i, end, pieces.end_tangent(end)).is_some();
+        [0, 1]
+            .into_iter()
+            .filter(|&end| corner(end))
+            .fold(sign, |sign, end| sign.and(Sign::Fails { at: end as f64 }))
+    }
+
     fn question(&self, segment: usize, criterion: Criterion) -> Option<Question> {
         let calls = self.checker.calls()[segment];
         let polygon = self.checker.polygon();
         let normals = [segment, segment + 1].map(|i| polygon.binormal(i).normalize_or_zero());
+        let beside = polygon.binormals_beside(segment).map(DVec3::normalize_or_zero);
         let cones = self.checker.cones(segment);
-        calls.any(Calls::of(criterion)).then_some(Question { criterion, calls, normals, cones })
+        let chord = polygon.direction(segment);
+        let question = Question { criterion, calls, normals, beside, chord, cones };
+        calls.any(Calls::of(criterion)).then_some(question)
     }
 
     fn parameter(&self, segment: usize, local: f64) -> f64 {
@@ -229,6 +247,11 @@ impl<'a> CurveChecker<'a> {
     /// Whether each segment is one polynomial cubic.
     fn is_cubic(&self) -> bool {
         self.aligned && self.curve.degree() == 3 && !self.curve.is_rational()
+    }
+
+    /// A vector along the tangent at the start (0) or the end (1) of a segment.
+    pub(super) fn end_tangent(&self, i: usize, end: usize) -> DVec3 {
+        if self.is_cubic() { self.end_legs(i)[end] } else { self.segment(i).end_tangent(end) }
     }
 
     fn end_legs(&self, i: usize) -> [DVec3; 2] {

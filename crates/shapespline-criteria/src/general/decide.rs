@@ -3,10 +3,11 @@
 use glam::DVec3;
 use shapespline_geometry::polynomial::{Polynomial, Sign};
 
-use super::{Piece, Segment, swing::swings_once};
+use super::{Piece, Segment, swing::swings_once, turning::turns_at_nodes};
 use crate::{
     Calls, Criterion,
     faults::{Cones, LINE_PART},
+    regular::Hodograph,
 };
 
 /// What a segment is asked, and by which vectors of the polygon.
@@ -16,6 +17,9 @@ pub(crate) struct Question {
     pub(crate) calls: Calls,
     /// Unit binormal vectors at the two nodes.
     pub(crate) normals: [DVec3; 2],
+    /// Those at the nodes beside them, and the unit chord, by which turning goes.
+    pub(crate) beside: [DVec3; 2],
+    pub(crate) chord: DVec3,
     pub(crate) cones: Cones,
 }
 
@@ -62,12 +66,30 @@ pub(crate) fn decide(segment: &Segment, question: &Question) -> Sign {
             known.and(turns(segment, n)).and(sees_its_start(segment, n))
         }),
         Criterion::Inflection => swings_once(segment, [p, q]),
+        Criterion::Turning => turns_at_nodes(segment, question),
         Criterion::Torsion => {
             let sign = question.torsion_sign();
             each(segment, |piece| piece.determinant().map(1.0, |d| sign * d).sign())
         }
         Criterion::Coplanarity => cones(segment, question, Piece::omega),
         Criterion::Collinearity => cones(segment, question, Piece::tangent),
+        Criterion::Regular => {
+            each(segment, |piece| match Hodograph::of(&piece.tangent()).stops_at() {
+                Some(at) => Sign::Fails { at },
+                None => Sign::Positive,
+            })
+        }
+    }
+}
+
+/// The sign of a value at a parameter that is known to an error.
+pub(crate) fn clear(value: f64, error: f64, at: f64) -> Sign {
+    if value > error {
+        Sign::Positive
+    } else if value < -error || value == 0.0 || value.is_nan() {
+        Sign::Fails { at }
+    } else {
+        Sign::Undecided { from: at, to: at }
     }
 }
 

@@ -7,15 +7,17 @@
 //! | convexity | `ω·n / (‖γ'‖ σ₂)` |
 //! | global convexity | the same, and `2((γ−γ(0))×γ')·n / (t²‖γ'‖σ₂)`, `2(γ'(0)×(γ−γ(0)))·n / (t²‖γ'(0)‖σ₂)` |
 //! | inflection | the two signs at the ends, over the same sizes, and how clearly one of the three conditions of the proof holds |
+//! | turning | the signs at the ends over the same sizes, and the sines between tangent and chords |
 //! | torsion | `±det[γ',γ'',γ'''] / (‖γ'‖ σ₂ σ₃)` |
 //! | coplanarity, collinearity | `ε` less the sine of the angle |
+//! | regular | `‖γ'‖ / max ‖γ'‖` |
 //!
 //! All lie in `[−1, 1]`. The verdict is proved by other means and decides the sign; the size is found
 //! by search and refinement, to about nine digits.
 
 use glam::DVec3;
 
-use super::{Question, Segment};
+use super::{Question, Segment, turning};
 use crate::{Criterion, margin::Margin};
 
 /// `γ − γ(0), γ', γ'', γ'''` at a local parameter.
@@ -117,6 +119,11 @@ pub(crate) fn measure(segment: &Segment, question: &Question) -> Margin {
             end(0.0, 1.0)
                 .least(end(1.0, -1.0))
                 .least(minimum(segment, all, |jet| clearness(jet, [p, q], [s2, s3])))
+        }
+        Criterion::Turning => turning::margin(segment, question, s2),
+        Criterion::Regular => {
+            let largest = -minimum(segment, all, |jet| -jet.d[1].length()).value;
+            minimum(segment, all, |jet| ratio(jet.d[1].length(), largest))
         }
         Criterion::Torsion => {
             let sign = question.torsion_sign();

@@ -10,10 +10,12 @@
 //! form ([`shapespline_geometry::polynomial`]); what rounding leaves open is reported as undecided.
 
 mod checker;
+mod corner;
 mod decide;
 mod measure;
 mod segment;
 mod swing;
+mod turning;
 
 pub use checker::{CurveChecker, CurveError, INTERPOLATION, check_curve};
 pub(crate) use decide::{Question, corners, decide, is_never_outside};

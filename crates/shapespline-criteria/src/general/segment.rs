@@ -51,6 +51,12 @@ impl Segment {
         Self::new(&[BezierPart { control, local: [0.0, 1.0] }], false, 0.0)
     }
 
+    /// A vector along the tangent at the start (0) or the end (1).
+    pub(crate) fn end_tangent(&self, end: usize) -> DVec3 {
+        let piece = if end == 0 { self.pieces.first() } else { self.pieces.last() };
+        piece.map_or(DVec3::NAN, |piece| piece.tangent().ends()[end])
+    }
+
     /// Two segments as one, the second begun where the first ends; the local parameter 0.5 is the
     /// node between them.
     pub(crate) fn joined(first: &Self, second: &Self) -> Self {

@@ -19,7 +19,10 @@ use std::f64::consts::FRAC_PI_2;
 use glam::DVec3;
 use shapespline_geometry::polynomial::{Polynomial, Sign};
 
-use super::{Segment, decide::corners};
+use super::{
+    Segment,
+    decide::{clear, corners},
+};
 
 /// Subdivision ends at intervals of this part of a piece.
 const DEPTH: u32 = 44;
@@ -41,14 +44,7 @@ pub(crate) fn swings_once(segment: &Segment, normals: [DVec3; 2]) -> Sign {
         let [from, to] = piece.local;
         // The ends first: they are exact values, and most faults show there.
         let clear = |x: &Polynomial<f64>, end: usize, sign: f64| {
-            let value = sign * x.ends()[end];
-            if value > x.error() {
-                Sign::Positive
-            } else if value < -x.error() || value == 0.0 || value.is_nan() {
-                Sign::Fails { at: [from, to][end] }
-            } else {
-                Sign::Undecided { from: [from, to][end], to: [from, to][end] }
-            }
+            clear(sign * x.ends()[end], x.error(), [from, to][end])
         };
         if k == 0 {
             walk.note(clear(&x, 0, 1.0).and(clear(&y, 0, 1.0)));

@@ -2,7 +2,7 @@
 //!
 //! - *Compatibility* (12.1): the tangent at a node, seen along `P_i`, lies strictly between the two
 //!   chords: `l_{i−1}×T` and `T×l_i` both turn as `P_i` does. (Printed as a product that is negative,
-//!   which a tangent of the opposite direction passes too.)
+//!   which a tangent of the opposite direction passes too.) The criterion of turning asks it as well.
 //! - *Torsion at nodes* (Definition 9.2, item 2): where `Γ_{i−1}Γ_i > 0`, torsion has that sign on both
 //!   sides of the node. Where `Γ_{i−1}Γ_i < 0` it has to vanish or to jump there if both segments are
 //!   to keep theirs (Theorem 12.1).

@@ -46,7 +46,9 @@ impl<'a, 'c, 'p> Pair<'a, 'c, 'p> {
     }
 
     fn question(&self, criterion: Criterion, calls: Calls, cones: Cones) -> Question {
-        Question { criterion, calls, normals: self.normals(), cones }
+        // Turning is not asked here.
+        let (beside, chord) = ([DVec3::ZERO; 2], DVec3::ZERO);
+        Question { criterion, calls, normals: self.normals(), beside, chord, cones }
     }
 
     fn normals(&self) -> [DVec3; 2] {

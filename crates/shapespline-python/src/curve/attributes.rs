@@ -6,9 +6,10 @@ use shapespline::geometry::{Boundary, Dimension};
 
 use super::SpaceCurve;
 use crate::{
+    asked::{Asked, Given},
     diagnostics::{Diagnostics, SearchStep},
     error::input_error,
-    options::{self, CriteriaNames, tolerances},
+    options::{self, CriteriaNames},
     output::{FloatArray, vectors},
     report::{ShapeReport, Subject},
     tangents::Tangents,
@@ -152,14 +153,17 @@ impl SpaceCurve {
     /// Parameters
     /// ----------
     /// criteria : str or iterable of str, optional
-    ///     Any of ``"convexity"``, ``"inflection"``, ``"torsion"``, ``"coplanarity"``,
-    ///     ``"collinearity"`` and ``"global-convexity"``; default all but the last.
-    /// coplanarity, collinearity : float
+    ///     Any of ``"convexity"``, ``"inflection"``, ``"turning"``, ``"torsion"``, ``"coplanarity"``,
+    ///     ``"collinearity"``, ``"global-convexity"`` and ``"regular"``. Default of a shape-preserving
+    ///     curve: those it was fitted with; else all but the last two. Whether the curve is regular,
+    ///     γ' ≠ 0, is asked in any case, and listed where it is not.
+    /// coplanarity, collinearity : float, optional
     ///     ε₁ and ε₀ in (0, 1]: sine of the largest angle between binormal and plane normal where four
-    ///     points lie in a plane, and between tangent and line where three lie on a line.
-    /// tolerance : float
+    ///     points lie in a plane, and between tangent and line where three lie on a line. Default:
+    ///     those of the fit, else 0.2.
+    /// tolerance : float, optional
     ///     In [0, 1): points whose turning angle has a smaller sine count as collinear, and four whose
-    ///     unit chords span a smaller volume as coplanar.
+    ///     unit chords span a smaller volume as coplanar. Default: that of the fit, else 1e-9.
     ///
     /// Returns
     /// -------
@@ -175,7 +179,10 @@ impl SpaceCurve {
     /// -----
     /// Every criterion is decided exactly, from the Bézier legs of each cubic segment; nothing is
     /// sampled. Karavelas & Kaklis, Numer. Algorithms 23 (2000), Problem (P) and (5.34)–(5.57), with
-    /// inflection added. Cost O(n), on all threads for long curves.
+    /// inflection added; turning at the points is (i.3) of Manni, *Parametric shape-preserving spatial
+    /// interpolation and ν-splines* (2001), with (12.1) of Gautam. Where the points double back on
+    /// themselves a shape-preserving curve may have to stop, and its own check lets it, unless
+    /// ``"regular"`` is named. Cost O(n), on all threads for long curves.
     ///
     /// Examples
     /// --------
@@ -186,18 +193,22 @@ impl SpaceCurve {
     /// >>> ss.NuSpline.shape_preserving(points, "uniform").check().ok
     /// True
     #[pyo3(
-        signature = (criteria=CriteriaNames::ALL, *, coplanarity=0.2, collinearity=0.2, tolerance=1e-9),
-        text_signature = "($self, criteria=None, *, coplanarity=0.2, collinearity=0.2, tolerance=1e-9)"
+        signature = (
+            criteria=CriteriaNames::DEFAULT, *, coplanarity=None, collinearity=None, tolerance=None
+        ),
+        text_signature = "($self, criteria=None, *, coplanarity=None, collinearity=None, \
+                          tolerance=None)"
     )]
     fn check(
         &self,
         py: Python<'_>,
         criteria: CriteriaNames,
-        #[pyo3(from_py_with = options::coplanarity)] coplanarity: f64,
-        #[pyo3(from_py_with = options::collinearity)] collinearity: f64,
-        #[pyo3(from_py_with = options::tolerance)] tolerance: f64,
+        #[pyo3(from_py_with = options::optional_coplanarity)] coplanarity: Option<f64>,
+        #[pyo3(from_py_with = options::optional_collinearity)] collinearity: Option<f64>,
+        #[pyo3(from_py_with = options::optional_tolerance)] tolerance: Option<f64>,
     ) -> PyResult<ShapeReport> {
-        let tolerances = tolerances(coplanarity, collinearity, tolerance)?;
-        ShapeReport::make(py, Subject::Own(self.curve.clone()), criteria.0, tolerances)
+        let asked = self.search.as_ref().map_or_else(Asked::default, |search| search.asked);
+        let asked = asked.with(Given { criteria, coplanarity, collinearity, tolerance })?;
+        ShapeReport::make(py, Subject::Own(self.curve.clone()), asked)
     }
 }

@@ -19,7 +19,6 @@ mod layout;
 mod many;
 mod options;
 mod places;
-mod row_calculus;
 mod rows;
 mod spline;
 

@@ -43,7 +43,7 @@ impl ShapeReport {
     /// True
     fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let counts = PyDict::new(py);
-        for criterion in self.criteria.iter() {
+        for criterion in self.report.listed().iter() {
             let count = self.report.count(criterion);
             let entry = PyDict::new(py);
             entry.set_item("violated", count.violated)?;
@@ -70,9 +70,9 @@ impl ShapeReport {
         dict.set_item("ok", self.report.ok())?;
         dict.set_item("margin", margin.is_finite().then_some(margin))?;
         dict.set_item("counts", counts)?;
-        dict.set_item("coplanarity", self.tolerances.coplanarity)?;
-        dict.set_item("collinearity", self.tolerances.collinearity)?;
-        dict.set_item("tolerance", self.tolerances.zero)?;
+        dict.set_item("coplanarity", self.asked.tolerances.coplanarity)?;
+        dict.set_item("collinearity", self.asked.tolerances.collinearity)?;
+        dict.set_item("tolerance", self.asked.tolerances.zero)?;
         dict.set_item("segments", segments)?;
         dict.set_item("violations", violations)?;
         dict.set_item("undecided", undecided)?;
@@ -157,7 +157,7 @@ impl ShapeReport {
 
     fn _repr_html_(&self) -> String {
         let mut rows = String::new();
-        for criterion in self.criteria.iter() {
+        for criterion in self.report.listed().iter() {
             let count = self.report.count(criterion);
             rows += &format!(
                 "<tr><td>{}</td><td>{}</td><td>{}</td></tr>",

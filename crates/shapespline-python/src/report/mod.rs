@@ -6,9 +6,10 @@ use std::sync::OnceLock;
 
 use pyo3::{call::PyCallArgs, exceptions::PyTypeError, prelude::*, types::PyDict};
 use rayon::prelude::*;
-use shapespline::criteria::{self, Criteria, Record, Tolerances};
+use shapespline::criteria::{self, Record};
 
 use crate::{
+    asked::Asked,
     curve::boundary_object,
     error::subject_error,
     pickle::{self, Kind, Reduced},
@@ -38,38 +39,29 @@ const BLOCK: usize = 2048;
 /// >>> report.ok, report.counts()["convexity"]
 /// (False, (2, 2))
 /// >>> [(v.criterion, v.segment) for v in report.violations]
-/// [('convexity', 1), ('torsion', 1), ('convexity', 2), ('torsion', 2)]
+/// [('convexity', 1), ('turning', 1), ('torsion', 1), ('convexity', 2), ('turning', 2), ('torsion', 2)]
 /// >>> ss.NuSpline.shape_preserving(points, "uniform").check().ok
 /// True
 #[pyclass(module = "shapespline", frozen, weakref)]
 pub(crate) struct ShapeReport {
     pub(crate) report: criteria::ShapeReport,
     pub(crate) subject: Subject,
-    pub(crate) criteria: Criteria,
-    pub(crate) tolerances: Tolerances,
+    pub(crate) asked: Asked,
     margin: OnceLock<f64>,
 }
 
 impl ShapeReport {
-    pub(crate) fn of(
-        report: criteria::ShapeReport,
-        subject: Subject,
-        criteria: Criteria,
-        tolerances: Tolerances,
-    ) -> Self {
-        Self { report, subject, criteria, tolerances, margin: OnceLock::new() }
+    pub(crate) fn of(report: criteria::ShapeReport, subject: Subject, asked: Asked) -> Self {
+        // What is asked without being named is listed where it fails.
+        let report = criteria::ShapeReport { criteria: asked.criteria, ..report };
+        Self { report, subject, asked, margin: OnceLock::new() }
     }
 
     /// Checks a subject.
-    pub(crate) fn make(
-        py: Python<'_>,
-        subject: Subject,
-        criteria: Criteria,
-        tolerances: Tolerances,
-    ) -> PyResult<Self> {
-        let check = || subject.judge(criteria, tolerances, |judge| judge.report());
+    pub(crate) fn make(py: Python<'_>, subject: Subject, asked: Asked) -> PyResult<Self> {
+        let check = || subject.judge(asked, |judge| judge.report());
         let report = detached(py, subject.segments(), check).map_err(subject_error)?;
-        Ok(Self::of(report, subject, criteria, tolerances))
+        Ok(Self::of(report, subject, asked))
     }
 
     /// Makes something of the records of every segment, criterion by criterion, in order.
@@ -80,10 +72,10 @@ impl ShapeReport {
     ) -> PyResult<Vec<T>> {
         let segments = self.subject.segments();
         let records = detached(py, segments, || {
-            self.subject.judge(self.criteria, self.tolerances, |judge| {
+            self.subject.judge(self.asked, |judge| {
                 let of = |i: usize| {
                     let record = |criterion| make(judge.record(i, criterion));
-                    self.criteria.iter().map(record).collect::<Vec<T>>()
+                    self.report.listed().iter().map(record).collect::<Vec<T>>()
                 };
                 if segments <= 2 * BLOCK {
                     (0..segments).flat_map(of).collect()
@@ -106,7 +98,7 @@ impl ShapeReport {
 
     /// What the paper says of nodes and of oscillation.
     fn notes(&self, py: Python<'_>) -> PyResult<criteria::Notes> {
-        let make = || self.subject.judge(self.criteria, self.tolerances, |judge| judge.notes());
+        let make = || self.subject.judge(self.asked, |judge| judge.notes());
         detached(py, self.subject.segments(), make).map_err(subject_error)
     }
 }
@@ -244,7 +236,7 @@ impl ShapeReport {
     /// {'inflection': (0, 1)}
     fn counts<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let counts = PyDict::new(py);
-        for criterion in self.criteria.iter() {
+        for criterion in self.report.listed().iter() {
             let count = self.report.count(criterion);
             counts.set_item(criterion.name(), (count.violated, count.applicable))?;
         }

@@ -3,14 +3,11 @@
 use std::sync::Arc;
 
 use shapespline::{
-    criteria::{
-        Checker, Criteria, Criterion, CurveChecker, CurveError, Notes, Record, ShapeReport,
-        Tolerances,
-    },
+    criteria::{Checker, Criterion, CurveChecker, CurveError, Notes, Record, ShapeReport},
     geometry::{DVec3, DataPolygon, PiecewiseBezier},
 };
 
-use crate::curve::Curve;
+use crate::{asked::Asked, curve::Curve};
 
 /// A curve beside the points that it has to follow.
 #[derive(Clone)]
@@ -77,10 +74,10 @@ impl Subject {
     /// A curve that the points do not fit.
     pub(crate) fn judge<T>(
         &self,
-        criteria: Criteria,
-        tolerances: Tolerances,
+        asked: Asked,
         work: impl FnOnce(Judge<'_>) -> T,
     ) -> Result<T, CurveError> {
+        let (criteria, tolerances) = (asked.to_check(), asked.tolerances);
         match self {
             Self::Own(curve) => {
                 let polygon = curve.polygon()?;

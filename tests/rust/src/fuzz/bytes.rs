@@ -223,7 +223,7 @@ impl<'a> Bytes<'a> {
                 let bit = |c: &Criterion| chosen >> (*c as usize) & 1 == 1;
                 Criterion::ALL.into_iter().filter(bit).collect()
             }
-            _ => Criteria::ALL,
+            _ => Criteria::OF_FITS,
         }
     }
 

@@ -27,7 +27,8 @@ pub(super) fn run(data: &[u8]) {
     // Adding a step at a time may need thousands of rounds: cut short, it has to say so.
     let max_iterations = if doubling { None } else { Some(bytes.below(64)) };
     let options = SearchOptions { criteria, tolerances, strategy, step, max_iterations };
-    let default = tolerances == Tolerances::default() && criteria == Criteria::ALL && step == 0.5;
+    let default =
+        tolerances == Tolerances::default() && criteria == Criteria::OF_FITS && step == 0.5;
     let solvable = bytes.is_tame() && is_well_posed(&polygon);
     let must_solve = default && doubling && solvable;
     let continuity = if bytes.flag() { Continuity::C1 } else { Continuity::G1 };

@@ -1,0 +1,104 @@
+//! Corners at the points: the part of turning that no segment sees of itself.
+//!
+//! The tangent at a node is held against the chord of its own segment, for on the other side of the node the
+//! segment there does the same with the same tangent. Where the two differ, each of them is held against the
+//! other chord as well.
+
+use rayon::prelude::*;
+use shapespline_geometry::{DVec3, length, normalize};
+
+use super::CurveChecker;
+use crate::{Calls, Criterion, Faults, Record};
+
+/// Segments that a thread looks at, at least.
+const BLOCK: usize = 4096;
+
+impl CurveChecker<'_> {
+    /// The faults of turning at corners, ascending by segment.
+    pub(super) fn corner_faults(&self) -> Vec<(usize, Faults)> {
+        let n = self.checker().calls().len();
+        let of = |i: usize| {
+            let at = |end: usize, fault: Faults| {
+                let fails = self.beyond_chord(i, end, self.end_tangent(i, end)).is_some();
+                if fails { fault } else { Faults::default() }
+            };
+            (i, at(0, Faults::TURNING_AT_START).and(at(1, Faults::TURNING_AT_END)))
+        };
+        let fails = |fault: &(usize, Faults)| !fault.1.is_empty();
+        if n < 2 * BLOCK {
+            (0..n).map(of).filter(fails).collect()
+        } else {
+            (0..n).into_par_iter().with_min_len(BLOCK).map(of).filter(fails).collect()
+        }
+    }
+
+    /// A record with what the corners at the ends of its segment add to it.
+    pub(super) fn with_corners(&self, record: Record) -> Record {
+        if !record.applicable || record.criterion != Criterion::Turning {
+            return record;
+        }
+        let segment = record.segment;
+        let beyond = |end| self.beyond_chord(segment, end, self.end_tangent(segment, end));
+        [0, 1].into_iter().fold(record, |record, end| match beyond(end) {
+            Some(margin) if margin < record.margin => {
+                let location = self.checker().polygon().parameters()[segment + end];
+                Record { satisfied: false, margin, location, ..record }
+            }
+            Some(_) => Record { satisfied: false, ..record },
+            None => record,
+        })
+    }
+
+    /// How far the tangent at the start (0) or the end (1) of a segment lies beyond the chord of the segment
+    /// beside: the sine between them, not positive. None where it does not, and none where both segments
+    /// have the same tangent.
+    pub(super) fn beyond_chord(&self, segment: usize, end: usize, own: DVec3) -> Option<f64> {
+        let polygon = self.checker().polygon();
+        let asked = [Calls::TURNING_AT_START, Calls::TURNING_AT_END][end];
+        if !self.checker().calls()[segment].any(asked) {
+            return None;
+        }
+        let n = polygon.segments();
+        let at_end = if end == 0 { segment == 0 } else { segment + 1 == n };
+        // The tangent that was given there is the curve's own.
+        if at_end && !polygon.is_closed() {
+            return None;
+        }
+        let beside = if end == 0 { segment + n - 1 } else { segment + 1 } % n;
+        let [before, after] = polygon.directions_at(segment + end);
+        let normal = polygon.binormal(segment + end);
+        let product = if end == 0 { before.cross(own) } else { own.cross(after) }.dot(normal);
+        // Written so that a NaN fails.
+        if product > 0.0 {
+            return None;
+        }
+        let other = normalize(self.end_tangent(beside, 1 - end));
+        let direction = normalize(own);
+        let off = direction.cross(other).length();
+        if off <= self.checker().tolerances().zero && direction.dot(other) > 0.0 {
+            return None;
+        }
+        let size = length(own) * normal.length();
+        Some(if size > 0.0 { (product / size).clamp(-1.0, 0.0) } else { 0.0 })
+    }
+}
+
+/// Two lists of faults, each ascending by segment, as one.
+pub(super) fn joined(
+    mut all: Vec<(usize, Faults)>,
+    more: Vec<(usize, Faults)>,
+) -> Vec<(usize, Faults)> {
+    if more.is_empty() {
+        return all;
+    }
+    all.extend(more);
+    all.sort_by_key(|fault| fault.0);
+    all.dedup_by(|next, kept| {
+        let same = next.0 == kept.0;
+        if same {
+            kept.1 = kept.1.and(next.1);
+        }
+        same
+    });
+    all
+}
