@@ -359,6 +359,11 @@ def before_and_after(
     return drawing
 
 
+def quartic(x: Array, y: Array) -> ss.MonotoneQuartic:
+    """Return the paper's C¹ monotone quartic."""
+    return ss.MonotoneQuartic(x, y, shape=3.0)
+
+
 def quintic(x: Array, y: Array) -> ss.MonotoneQuintic:
     """Return the paper's C² monotone quintic."""
     return ss.MonotoneQuintic(x, y, slopes="fritsch-butland", fairness="parametric")
@@ -367,13 +372,13 @@ def quintic(x: Array, y: Array) -> ss.MonotoneQuintic:
 @figure("003-7")
 def quartic_wiggles() -> Figure:
     """Figure 7: a quartic that is not monotone, and one that is."""
-    return before_and_after("rpn14", plain_quartic, ss.MonotoneQuartic)
+    return before_and_after("rpn14", plain_quartic, quartic)
 
 
 @figure("003-8")
 def quartic_dip() -> Figure:
     """Figure 8: a dip in the last segment."""
-    return before_and_after("late jump", plain_quartic, ss.MonotoneQuartic)
+    return before_and_after("late jump", plain_quartic, quartic)
 
 
 @figure("003-9")

@@ -124,6 +124,13 @@ def lattice_walk(rng: np.random.Generator, count: int, dim: int = 3) -> Array:
     return np.cumsum(steps, axis=0)
 
 
+def regular(rng: np.random.Generator, count: int, dim: int = 3) -> Array:
+    """Return a few lattice steps over and over: what fails somewhere fails at every repeat."""
+    steps = rng.integers(-2, 3, size=(rng.integers(1, 6), dim)).astype(float)
+    steps[~steps.any(axis=1), 0] = 1.0
+    return np.cumsum(np.resize(steps, (2 * count, dim)), axis=0)
+
+
 def planar_in_space(rng: np.random.Generator, count: int) -> Array:
     """Return a walk in the plane z = 0 given with three coordinates."""
     points = random_walk(rng, count)
@@ -154,6 +161,8 @@ FAMILIES = {
     "planar uneven chords": lambda rng, count: uneven_chords(rng, count, 2),
     "lattice walk": lattice_walk,
     "planar lattice walk": lambda rng, count: lattice_walk(rng, count, 2),
+    "regular": regular,
+    "planar regular": lambda rng, count: regular(rng, count, 2),
     "planar in space": planar_in_space,
     "two or three points": two_or_three,
 }

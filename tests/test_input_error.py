@@ -100,12 +100,7 @@ ERRORS = {
         "wild",
     ),
     "not invertible": (lambda: ss.MonotoneQuintic(RISING, [0, 1, 0]).inverse(0.5), "y", 2, 0.0),
-    "an integral": (
-        lambda: ss.MonotoneQuintic(RISING, RISING).integrate(0, np.inf),
-        "b",
-        None,
-        np.inf,
-    ),
+    "a level": (lambda: ss.MonotoneQuintic(RISING, RISING).solve(np.inf), "y", None, np.inf),
     "a huge count": (lambda: own().sample(10**30), "n", None, str(10**30)),
     "a count that Python cannot write": (
         lambda: own().sample(10**5000),

@@ -6,7 +6,6 @@ the same curve is judged.
 """
 
 from dataclasses import dataclass, replace
-from functools import partial
 from itertools import product
 
 import numpy as np
@@ -19,6 +18,7 @@ import cases
 import polygons
 import scale
 import shapespline as ss
+from batches import assert_long_batches_agree, assert_same_batches
 from shapespline import _files
 
 _RNG = np.random.default_rng(15)
@@ -236,29 +236,6 @@ def test_every_export_is_judged_like_the_curve(case, tmp_path):
             assert report.ok == own.ok or abs(own.margin) <= 1e-7, name
 
 
-#: batches around the sizes at which evaluation goes another way
-BATCHES = sorted({m + d for m in (8, 16, 32, 64, 96, 128, 257) for d in (-1, 0, 1)} | {1, 2, 1000})
-
-
-def assert_same_batches(function, domain, rng):
-    """Evaluate one by one, sorted, backwards, strided, in two dimensions and among others."""
-    outside = 0.1 * (domain[1] - domain[0])
-    u = rng.uniform(domain[0] - outside, domain[1] + outside, max(BATCHES))
-    u[::7] = rng.choice(domain, len(u[::7]))
-    alone = np.array([function(x) for x in u.tolist()])
-    for m in BATCHES:
-        some, expected = u[:m], alone[:m]
-        order = np.argsort(some)
-        np.testing.assert_array_equal(function(some), expected)
-        np.testing.assert_array_equal(function(some[order]), expected[order])
-        np.testing.assert_array_equal(function(some[order[::-1]]), expected[order[::-1]])
-        np.testing.assert_array_equal(function(np.repeat(some, 3)[::3]), expected)
-        np.testing.assert_array_equal(function(some[::-1]), expected[::-1])
-        if m % 2 == 0:
-            square = function(some.reshape(2, -1))
-            np.testing.assert_array_equal(square.reshape(expected.shape), expected)
-
-
 @pytest.mark.parametrize("count", [3, 9, 64, 65, 130])
 @pytest.mark.parametrize("dim", [2, 3])
 @pytest.mark.parametrize("end", ["zero-curvature", "periodic"])
@@ -280,54 +257,11 @@ def test_curves_have_one_value_however_they_are_asked(family, end, dim, count, r
         assert_same_batches(question, curve.parameters, rng)
 
 
-#: every function of one variable, of data with a rise, a flat and a fall
-FUNCTIONS = {
-    "quintic": ss.MonotoneQuintic,
-    "quintic, fritsch-butland": lambda x, y: ss.MonotoneQuintic(x, y, slopes="fritsch-butland"),
-    "quartic": ss.MonotoneQuartic,
-    "derivative": lambda x, y: ss.MonotoneQuintic(x, y).derivative(),
-    "antiderivative": lambda x, y: ss.MonotoneQuartic(x, y).antiderivative(2),
-}
-
-
-@pytest.mark.parametrize("count", [2, 3, 9, 64, 65, 130, 300])
-@pytest.mark.parametrize("kind", FUNCTIONS)
-def test_functions_have_one_value_however_they_are_asked(kind, count, rng):
-    x = rng.uniform(0.2, 2, count).cumsum()
-    steps = rng.exponential(size=count)
-    steps[count // 2 :] *= -1
-    steps[count // 3 : count // 3 + 2] = 0
-    f = FUNCTIONS[kind](x, steps.cumsum())
-    for nu, extrapolate in product(range(3), [True, False, "clip", "linear"]):
-        assert_same_batches(partial(f, nu=nu, extrapolate=extrapolate), x, rng)
-
-
-@pytest.mark.parametrize("kind", ["quintic", "quartic"])
-@pytest.mark.parametrize("columns", [1, 3, 31, 64, 65])
-def test_columns_are_the_functions_one_by_one(kind, columns, rng):
-    x = rng.uniform(0.2, 2, 40).cumsum()
-    y = rng.exponential(size=(40, columns)).cumsum(axis=0)
-    together = FUNCTIONS[kind](x, y)
-    apart = [FUNCTIONS[kind](x, column) for column in y.T]
-    for m in (1, 8, 33, 257):
-        q = rng.uniform(x[0] - 1, x[-1] + 1, m)
-        for nu in range(3):
-            expected = np.column_stack([f(q, nu) for f in apart])
-            np.testing.assert_array_equal(together(q, nu), expected)
-
-
-@pytest.mark.parametrize("kind", ["quintic", "quartic"])
-def test_inverses_are_found_however_they_are_asked_for(kind, rng):
-    """One alone and many at once are found on different ways, with the same residual."""
-    x, y = rng.uniform(0.2, 2, 300).cumsum(), rng.exponential(size=300).cumsum()
-    f = FUNCTIONS[kind](x, y)
-    levels = rng.uniform(y[0], y[-1], max(BATCHES))
-    alone = np.array([f.inverse(level) for level in levels.tolist()])
-    for m in BATCHES:
-        for some in (slice(m), np.argsort(levels[:m]), slice(None, 3 * m, 3)):
-            found = f.inverse(levels[some])
-            np.testing.assert_allclose(f(found), levels[some], rtol=0, atol=1e-14 * y[-1])
-            np.testing.assert_allclose(found, alone[some], rtol=0, atol=1e-9 * x[-1])
+@pytest.mark.parametrize("dim", [2, 3])
+@pytest.mark.parametrize("family", cases.FAMILIES)
+def test_long_batches_have_the_values_of_short_ones(family, dim, rng):
+    curve = cases.Case("walk", polygons.random_walk(rng, 300, dim), family=family).tense(0.7)
+    assert_long_batches_agree(curve, curve.parameters[[0, -1]], rng)
 
 
 METHODS = {ss.NuSpline: "nu", ss.TensionSpline: "tension", ss.CatmullRom: "catmull-rom"}

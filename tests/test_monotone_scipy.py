@@ -13,7 +13,7 @@ def make(family, rng, **options):
 
 @pytest.fixture(params=[ss.MonotoneQuartic, ss.MonotoneQuintic])
 def f(request, rng):
-    return make(request.param, rng)
+    return make(request.param, rng, extrapolate=True)
 
 
 def close(a, b):
@@ -67,7 +67,11 @@ def test_axes(rng, axis):
 
 def test_extrapolation_goes_along(rng):
     out = [-100.0, 100.0]
-    for mode in (False, "linear", "clip"):
+    for mode in (False, "linear", "clip", (True, "linear")):
         f = make(ss.MonotoneQuintic, rng, extrapolate=mode)
         assert np.isnan(f.to_bpoly()(out)).all()
         assert np.isnan(f.to_ppoly()(out)).all()
+    f = make(ss.MonotoneQuintic, rng, extrapolate="periodic")
+    close(f.to_bpoly()(out), f(out))
+    close(f.to_ppoly()(out), f(out))
+    close(f.to_ppoly().integrate(*out), f.integrate(*out))

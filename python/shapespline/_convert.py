@@ -71,25 +71,11 @@ def _of_powers(curve: Any) -> PiecewiseBezier:
 
 
 def _of_monotone(f: MonotoneSpline) -> PiecewiseBezier:
-    """Return the graph of a function of one column.
-
-    Paper 003, the Bernstein form of (3), with m = h d and the shape parameters; of the quintic the
-    Hermite form, which (7) is with second derivatives in place of α and β.
-    """
+    """Return the graph of a function of one column."""
     if f.y.ndim != 1:
         text = f"the function must have one column to be a curve, got y of {f.y.shape}"
         raise InputError(text, "curve", value=f.y.shape)
-    x, y, h = f.x, f.y, np.diff(f.x)
-    start, end = y[:-1], y[1:]
-    m0, m1 = h * f.slopes[:-1], h * f.slopes[1:]
-    if f.degree == 4:
-        # Where a slope is zero its shape parameter has no effect, and may be anything.
-        pull = np.where(m0 == 0, 0, f.alpha * m0) - np.where(m1 == 0, 0, f.beta * m1)
-        inner = [start + m0 / 4, (start + end) / 2 + pull / 6, end - m1 / 4]
-    else:
-        s0, s1 = h * h * f.second_derivatives[:-1] / 20, h * h * f.second_derivatives[1:] / 20
-        inner = [start + m0 / 5, start + 0.4 * m0 + s0, end - 0.4 * m1 + s1, end - m1 / 5]
-    values = np.stack([start, *inner, end], axis=1)
+    x, values = f.x, f._bernstein().T
     t = np.linspace(0.0, 1.0, values.shape[1])
     across = x[:-1, None] * (1 - t) + x[1:, None] * t
     return PiecewiseBezier(np.stack([across, values], axis=2), x)

@@ -180,5 +180,5 @@ def add_fit_options(parser: argparse.ArgumentParser, methods: Iterable[str]) -> 
         help="quintic: the energy that is least (default: bending)",
     )
     function.add_argument(
-        "--shape", type=real, metavar="X", help="quartic: first value of α and β (default: 3)"
+        "--shape", type=real, metavar="X", help="quartic: first value of α and β (default: 1)"
     )

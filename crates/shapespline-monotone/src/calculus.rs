@@ -1,20 +1,22 @@
 //! Derivatives, integrals and solutions of the interpolants.
 
 use crate::bernstein;
-use crate::extrapolation::Extrapolation;
+use crate::beyond::Beyond;
+use crate::data::{PowerOfTwo, exponent};
+use crate::extrapolation::{Continuation, Extrapolation};
 use crate::integrals::{Pieces, whole};
 use crate::piecewise::PiecewisePolynomial;
 use crate::spline::{Kind, MonotoneSpline};
 
 impl MonotoneSpline {
-    /// Bernstein coefficients of the first derivative; its ends are the slopes to the last bit.
+    /// Bernstein coefficients of the first derivative, scaled; its ends are the slopes to the last bit.
     fn slope_coefficients(&self, i: usize) -> ([f64; 5], usize) {
-        let h = self.x[i + 1] - self.x[i];
+        let h = self.scaled_length(i);
         let (d0, d1) = (self.d[i], self.d[i + 1]);
-        let secant = (self.y[i + 1] - self.y[i]) / h;
+        let secant = self.units.rise().scale(self.y[i + 1] - self.y[i]) / h;
         match &self.kind {
             Kind::Quartic { e } => {
-                let e = e[i] / h;
+                let e = self.units.rise().scale(e[i]) / h;
                 ([d0, 2.0 * secant - d0 + e, 2.0 * secant - d1 - e, d1, 0.0], 3)
             }
             Kind::Quintic { s } => {
@@ -24,14 +26,15 @@ impl MonotoneSpline {
         }
     }
 
-    /// `h²` times the second derivative's Bernstein coefficients, in units of y: no overflow on the way.
+    /// Bernstein coefficients of `h²` times the second derivative, in scaled units of y.
     fn second_coefficients(&self, i: usize) -> ([f64; 4], usize) {
-        let h = self.x[i + 1] - self.x[i];
-        let dy = self.y[i + 1] - self.y[i];
+        let h = self.scaled_length(i);
+        let dy = self.units.rise().scale(self.y[i + 1] - self.y[i]);
         let (m0, m1) = (h * self.d[i], h * self.d[i + 1]);
         match &self.kind {
             Kind::Quartic { e } => {
-                let (b, c) = (2.0 * dy - m0 + e[i], 2.0 * dy - m1 - e[i]);
+                let e = self.units.rise().scale(e[i]);
+                let (b, c) = (2.0 * dy - m0 + e, 2.0 * dy - m1 - e);
                 ([3.0 * (b - m0), 3.0 * (c - b), 3.0 * (m1 - c), 0.0], 2)
             }
             Kind::Quintic { s } => {
@@ -43,31 +46,90 @@ impl MonotoneSpline {
         }
     }
 
-    /// Derivative of order ≥ 1 of piece i, inside or outside its segment.
-    pub(crate) fn derivative_at(&self, i: usize, x: f64, nu: usize) -> f64 {
-        let h = self.x[i + 1] - self.x[i];
-        let t = (x - self.x[i]) / h;
+    /// Bernstein coefficients of the derivative of an order from 1 to the degree, in units that [`Self::derivative_out`]
+    /// turns into those of the data, and their degree.
+    fn unscaled_coefficients(&self, i: usize, nu: usize) -> ([f64; 5], usize) {
         if nu == 1 {
-            let (c, degree) = self.slope_coefficients(i);
-            return bernstein::value(&c[..=degree], t);
+            return self.slope_coefficients(i);
         }
-        if nu > self.degree() {
-            return 0.0;
-        }
-        if let (Kind::Quintic { s }, 2) = (&self.kind, nu) {
-            // To the last bit, so that neighbours agree.
-            if t == 0.0 || t == 1.0 {
-                return s[i + usize::from(t == 1.0)];
-            }
-        }
-        let (mut c, mut degree) = self.second_coefficients(i);
+        let ([c0, c1, c2, c3], mut degree) = self.second_coefficients(i);
+        let mut c = [c0, c1, c2, c3, 0.0];
         for _ in 2..nu {
             for k in 0..degree {
                 c[k] = degree as f64 * (c[k + 1] - c[k]);
             }
             degree -= 1;
         }
-        (0..nu).fold(bernstein::value(&c[..=degree], t), |v, _| v / h)
+        (c, degree)
+    }
+
+    /// A derivative of order `nu` ≥ 1 on segment i in the data's units: a scaled slope, or else `h^nu` times the derivative
+    /// in scaled units of y. Only a result out of range leaves the range.
+    fn derivative_out(&self, i: usize, value: f64, nu: usize) -> f64 {
+        if nu == 1 {
+            return self.units.derivative_out(value, 1);
+        }
+        let h = self.x[i + 1] - self.x[i];
+        let e = exponent(h);
+        let h = PowerOfTwo::new(-e).scale(h);
+        let unit = PowerOfTwo::new(self.units.ey - nu as i32 * e);
+        unit.scale((0..nu).fold(value, |v, _| v / h))
+    }
+
+    /// The second derivatives at the ends of segment i where they are stored: to the last bit, so that neighbours agree.
+    fn stored_seconds(&self, i: usize) -> Option<[f64; 2]> {
+        match &self.kind {
+            Kind::Quintic { s } => Some([i, i + 1].map(|j| self.units.derivative_out(s[j], 2))),
+            Kind::Quartic { .. } => None,
+        }
+    }
+
+    /// Bernstein coefficients of the derivative of an order from 1 to the degree, in the data's units, and their degree.
+    fn derivative_coefficients(&self, i: usize, nu: usize) -> ([f64; 5], usize) {
+        let (mut c, degree) = self.unscaled_coefficients(i, nu);
+        for c in &mut c[..=degree] {
+            *c = self.derivative_out(i, *c, nu);
+        }
+        if let (2, Some([s0, s1])) = (nu, self.stored_seconds(i)) {
+            (c[0], c[degree]) = (s0, s1);
+        }
+        (c, degree)
+    }
+
+    /// Derivative of order ≥ 1 of piece i in its segment.
+    pub(crate) fn derivative_at(&self, i: usize, x: f64, nu: usize) -> f64 {
+        if nu > self.degree() {
+            return 0.0;
+        }
+        let t = self.records[i].local(x);
+        if let (true, 2, Some(s)) = (t == 0.0 || t == 1.0, nu, self.stored_seconds(i)) {
+            return s[usize::from(t == 1.0)];
+        }
+        let (c, degree) = self.unscaled_coefficients(i, nu);
+        self.derivative_out(i, bernstein::value(&c[..=degree], t), nu)
+    }
+
+    /// What the derivative of order `nu` is beyond an end of the knots, where that is a polynomial.
+    pub(crate) fn beyond(&self, right: bool, nu: usize, mode: Continuation) -> Option<Beyond> {
+        let n = self.records.len();
+        let i = if right { n - 1 } else { 0 };
+        let end = [self.x[i], self.x[i + 1]];
+        if nu > self.degree() {
+            return Beyond::new(&[0.0], [0.0; 2], end, right, mode);
+        }
+        if nu > 0 {
+            let (c, degree) = self.derivative_coefficients(i, nu);
+            return Beyond::new(&c[..=degree], [0.0; 2], end, right, mode);
+        }
+        let (base, dy) = (self.y[if right { n } else { 0 }], self.y[i + 1] - self.y[i]);
+        let (y0, y1) = if right { (-dy, 0.0) } else { (0.0, dy) };
+        // The slope at the inner end has the rounding of the neighbour's secant.
+        let near = if right { n.saturating_sub(2) } else { 1.min(n - 1) };
+        let lever = 1.0 + (end[1] - end[0]) / (self.x[near + 1] - self.x[near]);
+        let size =
+            [i, i + 1, near, near + 1].map(|k| self.y[k].abs()).into_iter().fold(0.0, f64::max);
+        let base = [base, f64::EPSILON * size * lever];
+        Beyond::new(&self.piece_between(i, y0, y1)[..=self.degree()], base, end, right, mode)
     }
 
     /// The derivative of order `nu` as a function. O(N).
@@ -76,28 +138,18 @@ impl MonotoneSpline {
         if nu == 0 {
             return self.to_piecewise();
         }
-        let mut c = Vec::with_capacity(self.records.len() * self.degree());
-        for i in 0..self.records.len() {
-            let (piece, degree) = self.slope_coefficients(i);
-            c.extend_from_slice(&piece[..=degree]);
+        let mode =
+            (0..nu.min(self.degree() + 1)).fold(self.extrapolate, |mode, _| mode.derivative());
+        let n = self.records.len();
+        if nu > self.degree() {
+            return PiecewisePolynomial::new(self.x.clone(), 0, vec![0.0; n], mode);
         }
-        let mode = self.extrapolate.derivative();
-        if nu == 1 {
-            return PiecewisePolynomial::new(self.x.clone(), self.degree() - 1, c, mode);
+        let degree = self.degree() - nu;
+        let mut c = Vec::with_capacity(n * (degree + 1));
+        for i in 0..n {
+            c.extend_from_slice(&self.derivative_coefficients(i, nu).0[..=degree]);
         }
-        c.clear();
-        for i in 0..self.records.len() {
-            let h = self.x[i + 1] - self.x[i];
-            let (piece, degree) = self.second_coefficients(i);
-            c.extend(piece[..=degree].iter().map(|v| v / h / h));
-            if let Kind::Quintic { s } = &self.kind {
-                // To the last bit, so that neighbours agree.
-                let end = c.len() - 1;
-                (c[end - 3], c[end]) = (s[i], s[i + 1]);
-            }
-        }
-        let mode = mode.derivative();
-        PiecewisePolynomial::new(self.x.clone(), self.degree() - 2, c, mode).derivative(nu - 2)
+        PiecewisePolynomial::new(self.x.clone(), degree, c, mode)
     }
 
     /// An antiderivative of order `nu`, zero at the first knot. O(N).
@@ -106,7 +158,8 @@ impl MonotoneSpline {
         self.to_piecewise().antiderivative(nu)
     }
 
-    /// `∫ₐᵇ f dx`, also for a > b and outside the data as the extrapolation says. O(log N), after a first call of O(N).
+    /// `∫ₐᵇ f dx`, also for a > b and outside the data as the extrapolation says; NaN for NaN, and for an infinite end the
+    /// limit (NaN where there is none). O(log N), after a first call of O(N).
     #[must_use]
     pub fn integrate(&self, a: f64, b: f64, extrapolate: Option<Extrapolation>) -> f64 {
         let n = self.records.len();
@@ -120,6 +173,7 @@ impl MonotoneSpline {
                 let integral = |i: usize| whole(&self.piece(i)[..=self.degree()], h(i));
                 self.cached.integrals.get(n, integral)
             },
+            beyond: |right, mode| self.beyond(right, 0, mode),
         };
         pieces.integrate(a, b, extrapolate.unwrap_or(self.extrapolate))
     }
@@ -131,8 +185,12 @@ impl MonotoneSpline {
     }
 
     /// All x with f(x) = y, increasing, each once; where f equals y on a whole segment its start followed by NaN, as
-    /// SciPy's `PPoly.solve` does. Solutions outside the data follow the extrapolation. O(N): a segment is monotone,
-    /// so it is looked into only when y lies between its ends.
+    /// SciPy's `PPoly.solve` does. Solutions outside the data follow the extrapolation; of a function that repeats those
+    /// on the knots are meant, and of a half line on which f equals y the knot alone. O(N): a segment is monotone, so it
+    /// is searched only when y lies between its ends.
+    ///
+    /// At every solution f is y up to some units in the last place of the data's range, or passes y between the
+    /// neighbouring floating-point numbers.
     #[must_use]
     pub fn solve(&self, y: f64, extrapolate: Option<Extrapolation>) -> Vec<f64> {
         let mode = extrapolate.unwrap_or(self.extrapolate);
@@ -140,9 +198,12 @@ impl MonotoneSpline {
         if y.is_nan() {
             return Vec::new();
         }
-        let (first, last) = (self.x[0], self.x[n]);
-        let mut out: Vec<f64> =
-            self.end_piece(0).solve(y, Some(mode)).into_iter().filter(|x| *x < first).collect();
+        let value = |x: f64| self.evaluate(x, 0, Some(mode));
+        let beyond = |right: bool| {
+            let part = self.beyond(right, 0, mode.side(right));
+            part.map_or_else(Vec::new, |part| part.solve(y, value))
+        };
+        let mut out: Vec<f64> = beyond(false).into_iter().rev().collect();
         for i in 0..n {
             let (a, b) = (self.y[i], self.y[i + 1]);
             if a == y && b == y {
@@ -156,9 +217,8 @@ impl MonotoneSpline {
             }
             if a == y {
                 // The end of the segment before has reported it unless this is the first.
-                let reported = i > 0 && self.y[i] == y;
-                if !reported {
-                    out.push(self.x[i]);
+                if i == 0 && out.last().is_none_or(|last| *last != self.x[0]) {
+                    out.push(self.x[0]);
                 }
             } else if b == y {
                 out.push(self.x[i + 1]);
@@ -166,8 +226,8 @@ impl MonotoneSpline {
                 out.push(self.invert_in(i, y));
             }
         }
-        let beyond = self.end_piece(n - 1).solve(y, Some(mode));
-        out.extend(beyond.into_iter().filter(|x| *x > last));
+        let last = out.iter().rev().copied().find(|x| !x.is_nan());
+        out.extend(beyond(true).into_iter().filter(|x| last.is_none_or(|last| *x > last)));
         out
     }
 }

@@ -65,7 +65,7 @@ impl Units {
     /// Spacings and secants of the segments between the points given, scaled.
     #[inline(always)]
     pub(crate) fn differences(self, x: &[f64], y: &[f64], h: &mut [f64], delta: &mut [f64]) {
-        let (to_x, to_y) = (self.spacing(), PowerOfTwo::new(-self.ey));
+        let (to_x, to_y) = (self.spacing(), self.rise());
         let n = h.len();
         let (x, y, delta) = (&x[..n + 1], &y[..n + 1], &mut delta[..n]);
         for i in 0..n {
@@ -84,16 +84,25 @@ impl Units {
         PowerOfTwo::new(self.ey - self.ex)
     }
 
-    /// Slopes in scaled units to those of the data.
-    pub(crate) fn slopes_out(self, d: &mut [f64]) {
-        let unit = self.slope();
-        parts_mut(d, |_, d| d.iter_mut().for_each(|d| *d = unit.scale(*d)));
+    /// A difference of y of the data's units in scaled ones.
+    pub(crate) fn rise(self) -> PowerOfTwo {
+        PowerOfTwo::new(-self.ey)
     }
 
-    /// Second derivatives in scaled units to those of the data.
-    pub(crate) fn seconds_out(self, s: &mut [f64]) {
-        let (a, b) = (PowerOfTwo::new(self.ey - self.ex), PowerOfTwo::new(-self.ex));
-        parts_mut(s, |_, s| s.iter_mut().for_each(|s| *s = b.scale(a.scale(*s))));
+    /// A scaled difference of x in the data's units.
+    pub(crate) fn x(self) -> PowerOfTwo {
+        PowerOfTwo::new(self.ex)
+    }
+
+    /// A scaled derivative of order `nu` ≥ 1 in the data's units.
+    pub(crate) fn derivative_out(self, value: f64, nu: usize) -> f64 {
+        (1..nu).fold(self.slope().scale(value), |v, _| self.spacing().scale(v))
+    }
+
+    /// [`Self::derivative_out`] of many.
+    pub(crate) fn derivatives_out(self, scaled: &[f64], nu: usize) -> Vec<f64> {
+        let (slope, x) = (self.slope(), self.spacing());
+        scaled.iter().map(|v| (1..nu).fold(slope.scale(*v), |v, _| x.scale(v))).collect()
     }
 
     /// A scaled energy in the data's units: y²/x³ for the bending energy, y² for the parametric one.

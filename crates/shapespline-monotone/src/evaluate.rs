@@ -1,10 +1,10 @@
 //! Values and derivatives of the interpolants, one or many: segments first, then values, on all threads.
 
-use crate::extrapolation::Extrapolation;
+use crate::extrapolation::{Continuation, Extrapolation};
 use crate::locate::Searcher;
-use crate::piecewise::PiecewisePolynomial;
+use crate::periodic;
 use crate::record::Record;
-use crate::spline::{Cached, Kind, MonotoneSpline};
+use crate::spline::MonotoneSpline;
 use crate::tiles::{self, TILE};
 use std::array;
 
@@ -112,47 +112,37 @@ impl MonotoneSpline {
                 self.derivative_at(i, x, nu)
             }
         } else {
-            self.outside(i, x, nu, mode)
+            self.outside(x, nu, mode)
         }
     }
 
     #[cold]
-    fn outside(&self, i: usize, x: f64, nu: usize, mode: Extrapolation) -> f64 {
+    fn outside(&self, x: f64, nu: usize, mode: Extrapolation) -> f64 {
         if x.is_nan() {
             return f64::NAN;
         }
         let last = self.x.len() - 1;
-        let end = if x > self.x[last] { last } else { 0 };
+        let right = x > self.x[last];
+        let end = if right { last } else { 0 };
+        let mut mode = mode.side(right);
         match (mode, nu) {
-            (Extrapolation::Nan, _) => f64::NAN,
-            (Extrapolation::Zero, _) => 0.0,
-            (Extrapolation::Polynomial, 0) => {
-                let record = &self.records[i];
-                record.raw(record.local(x))
+            (Continuation::Nan, _) => return f64::NAN,
+            (Continuation::Periodic(_), _) => {
+                let (_, x) = periodic::wrapped(x, self.x[0], self.x[last]);
+                return self.evaluate(x, nu, Some(Extrapolation::NAN));
             }
-            (Extrapolation::Polynomial, _) => self.derivative_at(i, x, nu),
-            (Extrapolation::CLIP, 0) => self.y[end],
-            (Extrapolation::LINEAR, 0) => self.y[end] + self.d[end] * (x - self.x[end]),
-            (Extrapolation::LINEAR, 1) => self.d[end],
-            (Extrapolation::Taylor(k), _) if nu > usize::from(k) => 0.0,
-            (Extrapolation::Taylor(_), _) => self.end_piece(i).evaluate(x, nu, Some(mode)),
+            (Continuation::Taylor(0), 0) => return self.y[end],
+            (Continuation::Taylor(1), 0) => {
+                // A level line stays level however far.
+                let rise = self.d[end] * self.units.spacing().scale(x - self.x[end]);
+                return self.y[end]
+                    + if self.d[end] == 0.0 { 0.0 } else { self.units.y().scale(rise) };
+            }
+            _ => {}
         }
-    }
-
-    /// One segment as a piecewise polynomial.
-    pub(crate) fn end_piece(&self, i: usize) -> PiecewisePolynomial {
-        let one = Self {
-            x: self.x[i..=i + 1].to_vec(),
-            y: self.y[i..=i + 1].to_vec(),
-            d: self.d[i..=i + 1].to_vec(),
-            kind: match &self.kind {
-                Kind::Quartic { e } => Kind::Quartic { e: vec![e[i]] },
-                Kind::Quintic { s } => Kind::Quintic { s: s[i..=i + 1].to_vec() },
-            },
-            records: vec![self.records[i]],
-            extrapolate: self.extrapolate,
-            cached: Cached::default(),
-        };
-        one.to_piecewise()
+        for _ in 0..nu.min(self.degree() + 1) {
+            mode = mode.derivative();
+        }
+        self.beyond(right, nu, mode).map_or(f64::NAN, |part| part.evaluate(x, 0))
     }
 }

@@ -1,9 +1,10 @@
 //! Definite integrals over many pieces in O(log N).
 
 use crate::bernstein;
-use crate::extrapolation::Extrapolation;
+use crate::beyond::Beyond;
+use crate::extrapolation::{Continuation, Extrapolation};
 use crate::locate::Searcher;
-use crate::piecewise::PiecewisePolynomial;
+use crate::periodic;
 use once_cell::race::OnceBox;
 
 /// Items of a level that one item of the next sums up: levels take a fifteenth of a number a piece.
@@ -72,7 +73,7 @@ impl Lazy {
 }
 
 /// A function of polynomial pieces, as integration sees it.
-pub(crate) struct Pieces<'a, P, S> {
+pub(crate) struct Pieces<'a, P, S, B> {
     pub(crate) x: &'a [f64],
     pub(crate) search: Searcher<'a>,
     pub(crate) degree: usize,
@@ -80,50 +81,63 @@ pub(crate) struct Pieces<'a, P, S> {
     pub(crate) piece: P,
     /// Sums of the pieces' integrals, made when they are needed first.
     pub(crate) sums: S,
+    /// The polynomial beyond an end.
+    pub(crate) beyond: B,
 }
 
-impl<'a, C, P, S> Pieces<'a, P, S>
+impl<'a, C, P, S, B> Pieces<'a, P, S, B>
 where
     C: AsRef<[f64]>,
     P: Fn(usize) -> C,
     S: Fn() -> &'a Sums,
+    B: Fn(bool, Continuation) -> Option<Beyond>,
 {
     /// `∫ₐᵇ f dx`, also for a > b and outside the knots as the extrapolation says.
     pub(crate) fn integrate(&self, a: f64, b: f64, mode: Extrapolation) -> f64 {
-        if a > b {
-            return -self.integrate(b, a, mode);
-        }
         if a.is_nan() || b.is_nan() {
             return f64::NAN;
         }
-        let last = self.x.len() - 1;
-        let (first, end) = (self.x[0], self.x[last]);
+        if a > b {
+            return -self.integrate(b, a, mode);
+        }
+        let (first, end) = (self.x[0], self.x[self.x.len() - 1]);
         let mut sum = 0.0;
-        // Outside: the antiderivative of the end piece alone.
-        for (from, to, i) in [(a, b.min(first), 0), (a.max(end), b, last - 1)] {
+        for (from, to, right) in [(a, b.min(first), false), (a.max(end), b, true)] {
             if from < to {
-                let knots = vec![self.x[i], self.x[i + 1]];
-                let c = (self.piece)(i).as_ref()[..=self.degree].to_vec();
-                let whole = PiecewisePolynomial::new(knots, self.degree, c, mode).antiderivative(1);
-                sum += whole.evaluate(to, 0, None) - whole.evaluate(from, 0, None);
+                sum += self.outside(from, to, right, mode.side(right));
             }
         }
         let (from, to) = (a.max(first), b.min(end));
-        if from < to {
-            let (i, j) = (self.search.find(from), self.search.find(to));
-            if i == j {
-                return sum + self.part(i, from, to);
+        if from < to { sum + self.inside(from, to) } else { sum }
+    }
+
+    /// The integral over a part beyond one end.
+    fn outside(&self, a: f64, b: f64, right: bool, mode: Continuation) -> f64 {
+        if matches!(mode, Continuation::Periodic(_)) {
+            let (first, end) = (self.x[0], self.x[self.x.len() - 1]);
+            let [(k, from), (l, to)] = [a, b].map(|x| periodic::wrapped(x, first, end));
+            let part = |from: f64, to: f64| if from < to { self.inside(from, to) } else { 0.0 };
+            if k == l {
+                return part(from, to);
             }
-            let whole = |k: usize| self.part(k, self.x[k], self.x[k + 1]);
-            sum += self.part(i, from, self.x[i + 1]);
-            sum += if j - i <= FEW {
-                (i + 1..j).map(whole).sum()
-            } else {
-                (self.sums)().between(i + 1, j, whole)
-            };
-            sum += self.part(j, self.x[j], to);
+            return (part(first, to) + part(from, end)) + (l - k - 1.0) * part(first, end);
         }
-        sum
+        (self.beyond)(right, mode).map_or(f64::NAN, |part| part.integrate(a, b))
+    }
+
+    /// The integral over a part of the knots.
+    fn inside(&self, from: f64, to: f64) -> f64 {
+        let (i, j) = (self.search.find(from), self.search.find(to));
+        if i == j {
+            return self.part(i, from, to);
+        }
+        let whole = |k: usize| self.part(k, self.x[k], self.x[k + 1]);
+        let between = if j - i <= FEW {
+            (i + 1..j).map(whole).sum()
+        } else {
+            (self.sums)().between(i + 1, j, whole)
+        };
+        self.part(i, from, self.x[i + 1]) + between + self.part(j, self.x[j], to)
     }
 
     /// The integral over a part of one piece.

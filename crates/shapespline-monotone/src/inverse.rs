@@ -1,7 +1,7 @@
 //! The inverse function of strictly monotone data: quantiles of a distribution function, and the like.
 
 use crate::MonotoneError;
-use crate::extrapolation::Extrapolation;
+use crate::extrapolation::Continuation;
 use crate::locate::{Locator, Searcher};
 use crate::record::Record;
 use crate::spline::MonotoneSpline;
@@ -65,8 +65,8 @@ impl MonotoneSpline {
         inverse.locator.searcher(knots, many)
     }
 
-    /// x with f(x) = y for every query. Outside the range of the data: NaN, with linear extrapolation the tangent's
-    /// inverse, with [`Extrapolation::CLIP`] the end. NaN gives NaN.
+    /// x with f(x) = y for every query. Outside the range of the data what the extrapolation there says: of a tangent line
+    /// its inverse (NaN where it is level), of the end value the end, else NaN. NaN gives NaN.
     ///
     /// The residual f(x) − y is of the size of an ulp of y, or of the change of f over an ulp of x where that is
     /// larger. An iteration of fourth order for many at once; what it does not finish goes to one that never leaves
@@ -160,10 +160,12 @@ impl MonotoneSpline {
             return f64::NAN;
         }
         let end = if (a < b) == (y < a) { 0 } else { n };
-        match self.extrapolation() {
-            Extrapolation::CLIP => self.x()[end],
-            Extrapolation::LINEAR if self.slopes()[end] != 0.0 => {
-                self.x()[end] + (y - self.y()[end]) / self.slopes()[end]
+        let slope = self.d[end];
+        match self.extrapolation().side(end > 0) {
+            Continuation::Taylor(0) => self.x()[end],
+            Continuation::Taylor(1) if slope != 0.0 => {
+                let rise = self.units.rise().scale(y - self.y()[end]);
+                self.x()[end] + self.units.x().scale(rise / slope)
             }
             _ => f64::NAN,
         }

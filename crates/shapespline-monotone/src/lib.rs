@@ -33,6 +33,7 @@
 #![allow(clippy::neg_cmp_op_on_partial_ord, clippy::needless_range_loop)]
 
 mod bernstein;
+mod beyond;
 pub mod bezier_like;
 mod calculus;
 mod data;
@@ -46,6 +47,7 @@ mod inverse;
 mod locate;
 mod many;
 mod optimal;
+mod periodic;
 mod piecewise;
 mod program;
 mod quartic;
@@ -54,6 +56,7 @@ mod quintic;
 mod record;
 #[cfg(test)]
 mod reference;
+mod roots;
 #[cfg(feature = "nlopt")]
 pub mod second_opinion;
 mod slopes;
@@ -69,7 +72,7 @@ struct ReadmeDoctests;
 pub use bezier_like::BezierLike;
 pub use energy::Fairness;
 pub use error::MonotoneError;
-pub use extrapolation::Extrapolation;
+pub use extrapolation::{Continuation, Extrapolation};
 pub use many::{MonotoneMany, fit_columns, fit_rows};
 pub use piecewise::PiecewisePolynomial;
 pub use quartic::{MonotoneQuartic, QuarticOptions, Shape};

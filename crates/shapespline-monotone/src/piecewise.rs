@@ -1,9 +1,12 @@
 //! Piecewise polynomials in Bernstein form: what derivatives and antiderivatives of the interpolants are.
 
 use crate::bernstein;
-use crate::extrapolation::Extrapolation;
+use crate::beyond::Beyond;
+use crate::extrapolation::{Continuation, Extrapolation};
 use crate::integrals::{Lazy, Pieces, whole};
 use crate::locate::Locator;
+use crate::periodic;
+use crate::roots::{Bernstein, Merged, verified};
 use crate::tiles::{self, TILE};
 
 /// Tiles that one thread works through at least.
@@ -123,44 +126,62 @@ impl PiecewisePolynomial {
     }
 
     fn at(&self, i: usize, x: f64, nu: usize, mode: Extrapolation) -> f64 {
-        let last = self.x.len() - 1;
-        let h = self.h(i);
-        let outside = x < self.x[0] || x > self.x[last];
-        if outside && mode != Extrapolation::Polynomial || x.is_nan() {
-            return match mode {
-                _ if x.is_nan() => f64::NAN,
-                Extrapolation::Zero => 0.0,
-                Extrapolation::Taylor(k) => {
-                    let right = x > self.x[last];
-                    let a = bernstein::taylor(self.piece(i), right);
-                    let tau = if right { (x - self.x[last]) / h } else { (self.x[0] - x) / h };
-                    let mut sum = 0.0;
-                    for p in (nu..=usize::from(k).min(self.degree)).rev() {
-                        let falling: f64 = (p + 1 - nu..=p).map(|f| f as f64).product();
-                        sum = sum * tau + falling * a[p];
-                    }
-                    let orient = if right { 1.0 } else { -1.0 };
-                    (0..nu).fold(sum, |v, _| orient * v / h)
-                }
-                _ => f64::NAN,
-            };
+        if x.is_nan() {
+            return f64::NAN;
         }
+        let last = self.x.len() - 1;
+        if x < self.x[0] || x > self.x[last] {
+            return self.outside(x, nu, mode);
+        }
+        if nu > self.degree {
+            return 0.0;
+        }
+        let t = (x - self.x[i]) / self.h(i);
         if nu == 0 {
-            return bernstein::value(self.piece(i), (x - self.x[i]) / h);
+            return bernstein::value(self.piece(i), t);
         }
         let mut c = self.piece(i).to_vec();
         for _ in 0..nu {
             c = bernstein::derivative(&c);
         }
-        let v = bernstein::value(&c, (x - self.x[i]) / h);
-        (0..nu).fold(v, |v, _| v / h)
+        let v = bernstein::value(&c, t);
+        (0..nu).fold(v, |v, _| v / self.h(i))
+    }
+
+    #[cold]
+    fn outside(&self, x: f64, nu: usize, mode: Extrapolation) -> f64 {
+        let last = self.x.len() - 1;
+        let right = x > self.x[last];
+        let mode = mode.side(right);
+        if let Continuation::Periodic(order) = mode {
+            let (count, place) = periodic::wrapped(x, self.x[0], self.x[last]);
+            let value = self.evaluate(place, nu, Some(Extrapolation::NAN));
+            if nu >= order {
+                return value;
+            }
+            let rise = |j: usize| {
+                self.at(last - 1, self.x[last], j, Extrapolation::NAN)
+                    - self.at(0, self.x[0], j, Extrapolation::NAN)
+            };
+            let rises: Vec<f64> = (0..order).map(rise).collect();
+            let c = periodic::accumulated(&rises, count, self.x[last] - self.x[0]);
+            return value + periodic::polynomial(&c, place - self.x[0], nu);
+        }
+        self.beyond(right, mode).map_or(f64::NAN, |part| part.evaluate(x, nu))
+    }
+
+    /// What it is beyond an end of the knots, where that is a polynomial.
+    fn beyond(&self, right: bool, mode: Continuation) -> Option<Beyond> {
+        let i = if right { self.x.len() - 2 } else { 0 };
+        Beyond::new(self.piece(i), [0.0; 2], [self.x[i], self.x[i + 1]], right, mode)
     }
 
     /// The derivative of order `nu` as a piecewise polynomial. O(N).
     #[must_use]
     pub fn derivative(&self, nu: usize) -> Self {
         let mut out = self.clone();
-        for _ in 0..nu {
+        // Beyond the degree all are zero, outside the knots only if they are zero there too.
+        for _ in 0..nu.min(self.degree + 1) {
             let mut c = Vec::with_capacity(out.c.len());
             for i in 0..out.x.len() - 1 {
                 let h = out.h(i);
@@ -193,44 +214,78 @@ impl PiecewisePolynomial {
         out
     }
 
-    /// `∫ₐᵇ f dx`, also for a > b and outside the knots as the extrapolation says. O(log N), after a
-    /// first call of O(N).
+    /// `∫ₐᵇ f dx`, also for a > b and outside the knots as the extrapolation says; NaN for NaN, and for an infinite end the
+    /// limit (NaN where there is none). O(log N), after a first call of O(N).
     #[must_use]
     pub fn integrate(&self, a: f64, b: f64, extrapolate: Option<Extrapolation>) -> f64 {
+        let mode = extrapolate.unwrap_or(self.extrapolate);
         let n = self.x.len() - 1;
+        let drifts = |side: Continuation| matches!(side, Continuation::Periodic(1..));
+        if a.min(b) < self.x[0] && drifts(mode.below) || a.max(b) > self.x[n] && drifts(mode.above)
+        {
+            let whole = Self { extrapolate: mode, ..self.clone() }.antiderivative(1);
+            return whole.evaluate(b, 0, None) - whole.evaluate(a, 0, None);
+        }
         let pieces = Pieces {
             x: &self.x,
             search: self.locator.searcher(&self.x, false),
             degree: self.degree,
             piece: |i: usize| self.piece(i),
             sums: || self.sums.get(n, |i| whole(self.piece(i), self.h(i))),
+            beyond: |right, mode| self.beyond(right, mode),
         };
-        pieces.integrate(a, b, extrapolate.unwrap_or(self.extrapolate))
+        pieces.integrate(a, b, mode)
     }
 
-    /// All x with f(x) = y, increasing, each once; where f equals y on a whole segment its start followed by NaN, as
-    /// SciPy's `PPoly.solve` does. Solutions outside the knots follow the extrapolation. O(N).
+    /// All x with f(x) = y, increasing, each once; where f is y on a whole segment its start followed by NaN, as SciPy's
+    /// `PPoly.solve` does. Solutions outside the knots follow the extrapolation; of a function that repeats those on the
+    /// knots are meant. O(N).
+    ///
+    /// Where rounding cannot tell f from y around a place, that is one solution. At every solution f is y up to some units
+    /// in the last place of the segment's values, or passes y between the neighbouring floating-point numbers.
     #[must_use]
     pub fn solve(&self, y: f64, extrapolate: Option<Extrapolation>) -> Vec<f64> {
         let mode = extrapolate.unwrap_or(self.extrapolate);
-        let n = self.x.len() - 1;
-        let mut out = self.outside(y, mode, false);
-        for i in 0..n {
-            let c: Vec<f64> = self.piece(i).iter().map(|v| v - y).collect();
-            if c.iter().all(|v| *v == 0.0) {
-                push(&mut out, self.x[i], self.h(i));
-                out.push(f64::NAN);
-                continue;
-            }
-            for t in bernstein::roots(&c) {
-                let x = if t == 1.0 { self.x[i + 1] } else { self.x[i] + t * self.h(i) };
-                push(&mut out, x, self.h(i));
-            }
+        if !y.is_finite() {
+            return Vec::new();
         }
-        for x in self.outside(y, mode, true) {
-            push(&mut out, x, self.h(n - 1));
+        let value = |x: f64| self.evaluate(x, 0, Some(mode));
+        let beyond = |right: bool| {
+            let part = self.beyond(right, mode.side(right));
+            part.map_or_else(Vec::new, |part| part.solve(y, value))
+        };
+        let mut out: Vec<f64> = beyond(false).into_iter().rev().collect();
+        for x in self.solve_inside(y) {
+            push(&mut out, x, self.h(0));
+        }
+        for x in beyond(true) {
+            push(&mut out, x, self.h(self.x.len() - 2));
         }
         out
+    }
+
+    /// Solutions on the knots.
+    fn solve_inside(&self, y: f64) -> Vec<f64> {
+        let mut merged = Merged::default();
+        for i in 0..self.x.len() - 1 {
+            let form = Bernstein::less(self.piece(i), y);
+            if form.is_zero() {
+                merged.add_zero(self.x[i]);
+            } else if form.is_definite() {
+                merged.close();
+            } else {
+                let (start, end) = (self.x[i], self.x[i + 1]);
+                let f = |x: f64| {
+                    let inside = start <= x && x <= end;
+                    if inside { self.at(i, x, 0, Extrapolation::NAN) - y } else { f64::NAN }
+                };
+                merged.add(&form, 1.0, |t| {
+                    let x = if t == 1.0 { end } else { start + t * (end - start) };
+                    verified(x, 2.0 * form.noise, f)
+                });
+            }
+        }
+        merged.finish()
     }
 
     /// All roots: [`Self::solve`] with y = 0.
@@ -238,37 +293,12 @@ impl PiecewisePolynomial {
     pub fn roots(&self, extrapolate: Option<Extrapolation>) -> Vec<f64> {
         self.solve(0.0, extrapolate)
     }
-
-    /// Solutions beyond one end, increasing.
-    fn outside(&self, y: f64, mode: Extrapolation, right: bool) -> Vec<f64> {
-        let n = self.x.len() - 1;
-        let i = if right { n - 1 } else { 0 };
-        let degree = match mode {
-            Extrapolation::Polynomial => self.degree,
-            Extrapolation::Taylor(k) => self.degree.min(usize::from(k)),
-            _ => return Vec::new(),
-        };
-        let mut a = bernstein::taylor(self.piece(i), right);
-        a.truncate(degree + 1);
-        a[0] -= y;
-        let roots = bernstein::positive_roots(&a);
-        let h = self.h(i);
-        if right {
-            roots.iter().map(|tau| self.x[n] + tau * h).collect()
-        } else {
-            roots.iter().rev().map(|tau| self.x[0] - tau * h).collect()
-        }
-    }
 }
 
-/// Append a solution unless it is the last one again (a root at a knot belongs to two segments).
+/// Append a solution unless it is the last one again (one at an end belongs to both sides).
 fn push(out: &mut Vec<f64>, x: f64, h: f64) {
-    let again = out
-        .iter()
-        .rev()
-        .find(|v| !v.is_nan())
-        .is_some_and(|last| (x - last).abs() <= 1e-14 * h.abs() || x == *last);
-    if !again {
+    let last = out.iter().rev().find(|v| !v.is_nan());
+    if !last.is_some_and(|last| (x - last).abs() <= 1e-14 * h.abs() || x == *last) {
         out.push(x);
     }
 }

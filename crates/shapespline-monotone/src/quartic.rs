@@ -16,7 +16,9 @@ use pass::{Made, Pass};
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Shape {
-    /// α = β everywhere; the paper takes 3.
+    /// α = β everywhere. With 1 (the default) the curve is the cubic through the ends with their slopes where that is
+    /// monotone, so that quadratics and cubics with exact slopes are reproduced, and the error is of order three with
+    /// Fritsch and Butland's; the paper starts from 3, which is of order two and bends more.
     Uniform(f64),
     /// One pair a segment.
     Segments {
@@ -44,7 +46,7 @@ impl Shape {
 
 impl Default for Shape {
     fn default() -> Self {
-        Self::Uniform(3.0)
+        Self::Uniform(1.0)
     }
 }
 
@@ -117,7 +119,7 @@ impl MonotoneQuartic {
         if !sound {
             // A spacing or a secant out of range, or a slope in the data's units: what and where.
             Data::new(x, y)?;
-            if let Some(i) = first(&d, |_, d| !d.is_finite()) {
+            if let Some(i) = first(&d, |_, d| !units.derivative_out(d, 1).is_finite()) {
                 return Err(crate::data::out_of_range("secant slope", "y", i, y[i]));
             }
         }
@@ -130,6 +132,7 @@ impl MonotoneQuartic {
             x: own_x,
             y: own_y,
             d,
+            units,
             kind: Kind::Quartic { e },
             records,
             extrapolate: options.extrapolate,
@@ -166,11 +169,11 @@ impl MonotoneQuartic {
     #[must_use]
     pub fn bending_energy(&self) -> f64 {
         let Kind::Quartic { e } = &self.spline.kind else { return f64::NAN };
-        let (x, y, d) = (self.x(), self.y(), self.slopes());
+        let (x, y) = (self.x(), self.y());
         let mut sum = 0.0;
         for (i, e) in e.iter().enumerate() {
             let h = x[i + 1] - x[i];
-            let (m0, m1, dy) = (h * d[i], h * d[i + 1], y[i + 1] - y[i]);
+            let ([m0, m1], dy) = (self.spline.tangent_rises(i), y[i + 1] - y[i]);
             // Second derivative's Bernstein coefficients 3(B−A), 3(C−B), 3(D−C), over h².
             let a = 3.0 * (2.0 * (dy - m0) + e);
             let b = 3.0 * (m0 - m1 - 2.0 * e);

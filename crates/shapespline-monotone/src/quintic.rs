@@ -1,7 +1,7 @@
 //! The C² monotone quintic: the paper's program, and the fairest over slopes as well.
 
 use crate::MonotoneError;
-use crate::data::{Data, check_finite, first, parts};
+use crate::data::{Data, check_finite, parts};
 use crate::energy::{self, Fairness, is_flat};
 use crate::extrapolation::Extrapolation;
 use crate::interrupt::{GoOn, ask};
@@ -43,7 +43,7 @@ impl Default for QuinticOptions {
         Self {
             slopes: Slopes::Optimal,
             fairness: Fairness::Bending,
-            extrapolate: Extrapolation::Polynomial,
+            extrapolate: Extrapolation::default(),
         }
     }
 }
@@ -92,6 +92,7 @@ pub struct Diagnostics {
 pub struct MonotoneQuintic {
     spline: MonotoneSpline,
     diagnostics: Diagnostics,
+    fairness: Fairness,
     bending_energy: f64,
 }
 
@@ -161,13 +162,10 @@ impl MonotoneQuintic {
         let spline =
             MonotoneSpline::quintic(units, x.to_vec(), y.to_vec(), d, s, options.extrapolate);
         // A second derivative beyond double precision: refuse rather than hand out infinities.
-        if let Kind::Quintic { s } = &spline.kind {
-            let overflow = |_, v: f64| !v.is_finite();
-            if let Some(i) = first(s, overflow).or(first(&spline.d, overflow)) {
-                return Err(crate::data::out_of_range("second derivative", "y", i, y[i]));
-            }
+        if let Some(i) = spline.overflow() {
+            return Err(crate::data::out_of_range("second derivative", "y", i, y[i]));
         }
-        Ok(Self { spline, diagnostics, bending_energy })
+        Ok(Self { spline, diagnostics, fairness, bending_energy })
     }
 
     /// How the optimisation went.
@@ -180,6 +178,12 @@ impl MonotoneQuintic {
     #[must_use]
     pub fn bending_energy(&self) -> f64 {
         self.bending_energy
+    }
+
+    /// What was minimised.
+    #[must_use]
+    pub fn fairness(&self) -> Fairness {
+        self.fairness
     }
 
     /// The interpolant without its diagnostics.
@@ -202,12 +206,12 @@ impl MonotoneQuintic {
     }
 
     fn parameters(&self, beta: bool) -> Vec<f64> {
-        let (x, y, d) = (self.x(), self.y(), self.slopes());
+        let (x, y, d, units) = (self.x(), self.y(), &self.spline.d, self.spline.units);
         let Kind::Quintic { s } = &self.spline.kind else { return Vec::new() };
         (0..x.len() - 1)
             .map(|i| {
-                let h = x[i + 1] - x[i];
-                let delta = (y[i + 1] - y[i]) / h;
+                let h = self.spline.scaled_length(i);
+                let delta = units.rise().scale(y[i + 1] - y[i]) / h;
                 let (product, slope) = if beta {
                     (3.0 * (delta - d[i]) - 0.5 * (h * s[i]), d[i + 1])
                 } else {

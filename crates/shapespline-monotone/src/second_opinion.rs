@@ -72,9 +72,7 @@ pub fn paper_program(
     let _ = solver.optimize(&mut u);
     let s = place(&u);
     let energy = data.units().energy_out(fairness, energy::total(&data, fairness, &d, &s));
-    let mut s = s;
-    data.units().seconds_out(&mut s);
-    Ok((s, energy))
+    Ok((data.units().derivatives_out(&s, 2), energy))
 }
 
 /// The optimum over slopes and second derivatives by NLopt's SLSQP: both in the data's units, and the minimised energy.
@@ -117,9 +115,8 @@ pub fn optimal_program(
         if j % 2 == 0 { d[j / 2] = v } else { s[j / 2] = v }
     }
     let energy = data.units().energy_out(fairness, energy::total(&data, fairness, &d, &s));
-    data.units().slopes_out(&mut d);
-    data.units().seconds_out(&mut s);
-    Ok((d, s, energy))
+    let units = data.units();
+    Ok((units.derivatives_out(&d, 1), units.derivatives_out(&s, 2), energy))
 }
 
 /// The free unknowns that minimise. In the unknowns `w = Lᵀv + L⁻¹q`, P = LLᵀ, the energy is ½|w|²: SLSQP begins with

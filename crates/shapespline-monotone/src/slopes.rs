@@ -1,4 +1,4 @@
-//! Nodal slopes: Fritsch–Butland as the paper prints it, and limits for slopes given by the caller.
+//! Nodal slopes: Fritsch–Butland as the paper prints it (but for ends beside a turn), and limits for given slopes.
 //!
 //! Everything is in signed, scaled units; decreasing data are the reflection of increasing ones because every
 //! formula here is odd in Δ.
@@ -30,14 +30,18 @@ pub(crate) fn harmonic(a: f64, b: f64) -> f64 {
     if high < 0.0 { mean } else { rising }
 }
 
-/// The paper's end slope: the three-point formula `(1 + Δ₀/Δ₁)Δ₀ − (Δ₀/Δ₁)(y₂−y₀)/(x₂−x₀)` clamped to [0, 2Δ₀],
-/// written as `Δ₀ + (Δ₀/Δ₁)(Δ₀ − Δ₁)h₁/(h₀+h₁)`, which needs no cancellation; 0 when Δ₁ = 0.
+/// The end slope. Where the two secants have one sign the paper's three-point formula
+/// `(1 + Δ₀/Δ₁)Δ₀ − (Δ₀/Δ₁)(y₂−y₀)/(x₂−x₀)`, written as `Δ₀ + (Δ₀/Δ₁)(Δ₀ − Δ₁)h₁/(h₀+h₁)`, which needs no
+/// cancellation. It is for monotone data: beside a turn or a flat (Δ₁ of the other sign or 0) the slope of the parabola
+/// through the three points, `Δ₀ + (Δ₀ − Δ₁)h₀/(h₀+h₁)`, as PCHIP has it (Moler, *Numerical Computing with MATLAB*, 3.6).
+/// Both limited to [0, 2Δ₀].
 pub(crate) fn end(h0: f64, h1: f64, delta0: f64, delta1: f64) -> f64 {
-    if delta0 == 0.0 || delta1 == 0.0 {
-        return 0.0;
-    }
-    let d = delta0 + (delta0 / delta1) * ((delta0 - delta1) * (h1 / (h0 + h1)));
-    limit(d, delta0, delta0)
+    let change = if sign(delta0) == sign(delta1) {
+        (delta0 / delta1) * ((delta0 - delta1) * (h1 / (h0 + h1)))
+    } else {
+        (delta0 - delta1) * (h0 / (h0 + h1))
+    };
+    limit(delta0 + change, delta0, delta0)
 }
 
 /// The nearest slope to `d` in the paper's region `0 ≤ d ≤ 2Δ` of both neighbours (mirrored for decreasing ones).
@@ -51,7 +55,7 @@ pub(crate) fn limit(d: f64, a: f64, b: f64) -> f64 {
     s * (s * d).max(0.0).min(cap)
 }
 
-/// Fritsch–Butland slopes at every node. O(N).
+/// Fritsch–Butland slopes at every node: harmonic means, and [`end`] at the ends. O(N).
 pub(crate) fn fritsch_butland(data: &Data) -> Vec<f64> {
     let (h, delta) = (&data.h, &data.delta);
     let n = data.len();
@@ -90,8 +94,7 @@ mod tests {
     #[test]
     fn the_paper_s_formulas() {
         let data = Data::new(&[0.0, 1.0, 3.0, 4.0], &[0.0, 1.0, 2.0, 8.0]).unwrap();
-        let mut d = fritsch_butland(&data);
-        data.units().slopes_out(&mut d);
+        let d = data.units().derivatives_out(&fritsch_butland(&data), 1);
         // Printed end formula: d0* = (1 + 2)·1 − 2·(2/3) = 5/3; the far end is beyond 2Δ and clamped.
         assert!((d[0] - 5.0 / 3.0).abs() < 1e-15);
         assert!((d[1] - 2.0 * 0.5 / 1.5).abs() < 1e-15);
@@ -106,6 +109,12 @@ mod tests {
         assert_eq!(harmonic(1e300, 1e-300), 2e-300);
         assert_eq!(end(1.0, 1.0, -1.0, -3.0), -end(1.0, 1.0, 1.0, 3.0));
         assert_eq!(end(1.0, 1.0, 1e300, 1e-300), 2e300);
+        // Beside a turn or a flat the parabola's slope, at most twice the secant; on a flat none.
+        assert_eq!(end(1.0, 3.0, 2.0, -1.0), 2.75);
+        assert_eq!(end(1.0, 1.0, 2.0, 0.0), 3.0);
+        assert_eq!(end(1.0, 1.0, -2.0, 3.0), -4.0);
+        assert_eq!((end(1.0, 1.0, 0.0, 2.0), end(1.0, 1.0, 0.0, 0.0)), (0.0, 0.0));
+        assert_eq!(end(1.0, 1.0, 1e300, -1e300), 2e300);
         assert_eq!(limit(-5.0, 1.0, 2.0), 0.0);
         assert_eq!(limit(5.0, 1.0, 2.0), 2.0);
         assert_eq!(limit(-5.0, -1.0, -2.0), -2.0);

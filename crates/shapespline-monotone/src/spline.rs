@@ -1,6 +1,6 @@
 //! The interpolant both schemes make: data, slopes, and one evaluation record a segment.
 
-use crate::data::Units;
+use crate::data::{Units, first};
 use crate::extrapolation::Extrapolation;
 use crate::integrals::Lazy;
 use crate::inverse::Inverse;
@@ -15,7 +15,7 @@ use once_cell::race::OnceBox;
 pub(crate) enum Kind {
     /// `e = ⅔(αm₀ − βm₁)` of every segment, in units of y.
     Quartic { e: Vec<f64> },
-    /// Second derivatives at the knots.
+    /// Second derivatives at the knots, scaled.
     Quintic { s: Vec<f64> },
 }
 
@@ -29,7 +29,10 @@ pub(crate) enum Kind {
 pub struct MonotoneSpline {
     pub(crate) x: Vec<f64>,
     pub(crate) y: Vec<f64>,
+    /// Slopes at the knots. These and second derivatives are kept in scaled units: in those of the data they may leave
+    /// the range of double precision where values and integrals do not.
     pub(crate) d: Vec<f64>,
+    pub(crate) units: Units,
     pub(crate) kind: Kind,
     pub(crate) records: Vec<Record>,
     pub(crate) extrapolate: Extrapolation,
@@ -82,9 +85,10 @@ impl TryFrom<Stored> for MonotoneSpline {
         if n < 2 || s.y.len() != n || s.d.len() != n || extra != n || s.records.len() + 1 != n {
             return Err("stored interpolant is inconsistent".to_owned());
         }
-        crate::data::check(&s.x, &s.y).map_err(|error| format!("stored interpolant: {error}"))?;
+        let units =
+            Units::of(&s.x, &s.y).map_err(|error| format!("stored interpolant: {error}"))?;
         let Stored { x, y, d, kind, records, extrapolate } = s;
-        Ok(Self { x, y, d, kind, records, extrapolate, cached: Cached::default() })
+        Ok(Self { x, y, d, units, kind, records, extrapolate, cached: Cached::default() })
     }
 }
 
@@ -94,8 +98,8 @@ impl MonotoneSpline {
         units: Units,
         x: Vec<f64>,
         y: Vec<f64>,
-        mut d: Vec<f64>,
-        mut s: Vec<f64>,
+        d: Vec<f64>,
+        s: Vec<f64>,
         extrapolate: Extrapolation,
     ) -> Self {
         let tile = |start: usize, count: usize| {
@@ -107,10 +111,19 @@ impl MonotoneSpline {
             }
         };
         let records = record::records(x.len() - 1, tile);
-        units.slopes_out(&mut d);
-        units.seconds_out(&mut s);
         let kind = Kind::Quintic { s };
-        Self { x, y, d, kind, records, extrapolate, cached: Cached::default() }
+        Self { x, y, d, units, kind, records, extrapolate, cached: Cached::default() }
+    }
+
+    /// The first knot whose slope or second derivative is beyond double precision in the data's units.
+    pub(crate) fn overflow(&self) -> Option<usize> {
+        let beyond =
+            |nu: usize| move |_: usize, v: f64| !self.units.derivative_out(v, nu).is_finite();
+        let seconds = match &self.kind {
+            Kind::Quintic { s } => first(s, beyond(2)),
+            Kind::Quartic { .. } => None,
+        };
+        seconds.or_else(|| first(&self.d, beyond(1)))
     }
 
     /// The abscissae.
@@ -125,18 +138,18 @@ impl MonotoneSpline {
         &self.y
     }
 
-    /// Slopes at the knots.
+    /// Slopes at the knots. O(N).
     #[must_use]
-    pub fn slopes(&self) -> &[f64] {
-        &self.d
+    pub fn slopes(&self) -> Vec<f64> {
+        self.units.derivatives_out(&self.d, 1)
     }
 
-    /// Second derivatives at the knots: stored for the quintic, from the right (at the last knot from the left) for
-    /// the quartic, which is only C¹.
+    /// Second derivatives at the knots: of the quartic, which is only C¹, from the right (at the last knot from the
+    /// left). O(N).
     #[must_use]
     pub fn second_derivatives(&self) -> Vec<f64> {
         match &self.kind {
-            Kind::Quintic { s } => s.clone(),
+            Kind::Quintic { s } => self.units.derivatives_out(s, 2),
             Kind::Quartic { .. } => {
                 let n = self.records.len();
                 (0..=n).map(|i| self.derivative_at(i.min(n - 1), self.x[i], 2)).collect()
@@ -169,18 +182,33 @@ impl MonotoneSpline {
         out
     }
 
+    /// The length of segment i, scaled.
+    pub(crate) fn scaled_length(&self, i: usize) -> f64 {
+        self.units.spacing().scale(self.x[i + 1] - self.x[i])
+    }
+
+    /// The slopes at the ends of segment i times its length: rises of the end tangents, in units of y.
+    pub(crate) fn tangent_rises(&self, i: usize) -> [f64; 2] {
+        let (h, unit) = (self.scaled_length(i), self.units.y());
+        [unit.scale(h * self.d[i]), unit.scale(h * self.d[i + 1])]
+    }
+
     /// Bernstein coefficients of one piece, `degree + 1` of them.
     pub(crate) fn piece(&self, i: usize) -> [f64; 6] {
-        let (y0, y1) = (self.y[i], self.y[i + 1]);
-        let h = self.x[i + 1] - self.x[i];
-        let (m0, m1) = (h * self.d[i], h * self.d[i + 1]);
+        self.piece_between(i, self.y[i], self.y[i + 1])
+    }
+
+    /// The same with other values at the ends, whose difference is that of the data.
+    pub(crate) fn piece_between(&self, i: usize, y0: f64, y1: f64) -> [f64; 6] {
+        let [m0, m1] = self.tangent_rises(i);
         match &self.kind {
             Kind::Quartic { e } => {
                 let middle = 0.5 * y0 + 0.5 * y1 + 0.25 * e[i];
                 [y0, y0 + 0.25 * m0, middle, y1 - 0.25 * m1, y1, 0.0]
             }
             Kind::Quintic { s } => {
-                let (k0, k1) = (h * (h * s[i]), h * (h * s[i + 1]));
+                let (h, unit) = (self.scaled_length(i), self.units.y());
+                let (k0, k1) = (unit.scale(h * (h * s[i])), unit.scale(h * (h * s[i + 1])));
                 let (b, c) = (y0 + (0.4 * m0 + 0.05 * k0), y1 - (0.4 * m1 - 0.05 * k1));
                 [y0, y0 + 0.2 * m0, b, c, y1 - 0.2 * m1, y1]
             }

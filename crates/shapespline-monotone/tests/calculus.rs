@@ -2,21 +2,8 @@
 #![allow(clippy::unwrap_used)]
 mod common;
 
-use common::{Rng, csv, monotone};
+use common::{Rng, csv, fits, monotone};
 use shapespline_monotone::*;
-
-fn fits(x: &[f64], y: &[f64], extrapolate: Extrapolation) -> Vec<MonotoneSpline> {
-    let q = QuarticOptions { extrapolate, ..QuarticOptions::default() };
-    let make = |slopes| {
-        let options = QuinticOptions { slopes, extrapolate, ..QuinticOptions::default() };
-        MonotoneQuintic::new(x, y, &options).unwrap().spline().clone()
-    };
-    vec![
-        MonotoneQuartic::new(x, y, &q).unwrap().spline().clone(),
-        make(Slopes::FritschButland),
-        make(Slopes::Optimal),
-    ]
-}
 
 /// Power coefficients of a Bernstein polynomial, by the binomial theorem: an independent evaluation.
 fn power(b: &[f64]) -> Vec<f64> {
@@ -43,7 +30,7 @@ fn wavy() -> (Vec<f64>, Vec<f64>) {
 #[test]
 fn values_and_derivatives_agree_with_power_form() {
     let (x, y) = wavy();
-    for f in fits(&x, &y, Extrapolation::Polynomial) {
+    for f in fits(&x, &y, Extrapolation::POLYNOMIAL) {
         let m = f.degree() + 1;
         let b = f.bernstein_coefficients();
         for nu in 0..=6 {
@@ -76,7 +63,7 @@ fn integrals_agree_with_gauss_quadrature() {
         (0.538_469_310_105_683_1, 0.478_628_670_499_366_5),
         (0.906_179_845_938_664, 0.236_926_885_056_189_08),
     ];
-    for f in fits(&x, &y, Extrapolation::Polynomial) {
+    for f in fits(&x, &y, Extrapolation::POLYNOMIAL) {
         let gauss = |a: f64, b: f64| {
             let mut cuts: Vec<f64> = x.iter().copied().filter(|v| *v > a && *v < b).collect();
             cuts.insert(0, a);
@@ -117,7 +104,7 @@ fn integrals_agree_with_gauss_quadrature() {
             let at = x[0] + (x[14] - x[0]) * f64::from(k) / 99.0;
             assert!((back.evaluate(at, 0, None) - f.value(at)).abs() < 1e-10);
         }
-        assert!(f.integrate(-1.0, 1.0, Some(Extrapolation::Nan)).is_nan());
+        assert!(f.integrate(-1.0, 1.0, Some(Extrapolation::NAN)).is_nan());
         let clip = f.integrate(-1.0, 0.0, Some(Extrapolation::CLIP));
         assert!((clip - y[0]).abs() < 1e-13);
         let line = f.integrate(-1.0, 0.0, Some(Extrapolation::LINEAR));
@@ -128,9 +115,9 @@ fn integrals_agree_with_gauss_quadrature() {
 #[test]
 fn roots_and_solutions() {
     let (x, y) = wavy();
-    for f in fits(&x, &y, Extrapolation::Polynomial) {
+    for f in fits(&x, &y, Extrapolation::POLYNOMIAL) {
         for level in [-0.3, 0.0, 1.1, y[4], -2.29] {
-            let inside = f.solve(level, Some(Extrapolation::Nan));
+            let inside = f.solve(level, Some(Extrapolation::NAN));
             // Count sign changes on a fine grid: the independent answer.
             let grid: Vec<f64> = (0..=40_000)
                 .map(|k| x[0] + (x[14] - x[0]) * (f64::from(k) + 1e-3) / 40_001.0)
@@ -147,7 +134,7 @@ fn roots_and_solutions() {
             for s in f.solve(level, None) {
                 assert!((f.value(s) - level).abs() < 1e-11 * (1.0 + s.abs()), "{level}: {s}");
             }
-            let general = f.to_piecewise().solve(level, Some(Extrapolation::Nan));
+            let general = f.to_piecewise().solve(level, Some(Extrapolation::NAN));
             assert_eq!(general.len(), inside.len(), "{level}: {general:?} {inside:?}");
             for (a, b) in general.iter().zip(&inside) {
                 assert!((a - b).abs() < 1e-6);
@@ -174,7 +161,7 @@ fn roots_and_solutions() {
         );
     }
     // A flat piece at the level: its start, then NaN.
-    let f = &fits(&[0.0, 1.0, 2.0, 3.0], &[0.0, 1.0, 1.0, 2.0], Extrapolation::Nan)[1];
+    let f = &fits(&[0.0, 1.0, 2.0, 3.0], &[0.0, 1.0, 1.0, 2.0], Extrapolation::NAN)[1];
     let s = f.solve(1.0, None);
     assert_eq!(s[0], 1.0);
     assert!(s[1].is_nan() && s.len() <= 3, "{s:?}");
@@ -195,7 +182,7 @@ fn inverse_is_exact_to_an_ulp_or_so() {
         if case % 2 == 1 {
             y.iter_mut().for_each(|v| *v = -*v);
         }
-        for f in fits(&x, &y, Extrapolation::Nan) {
+        for f in fits(&x, &y, Extrapolation::NAN) {
             let mut queries: Vec<f64> =
                 (0..4000).map(|_| y[0] + (y[n - 1] - y[0]) * rng.next()).collect();
             // The second half in order, and equal ones among them: few segments at a time, where neighbours help.
@@ -232,18 +219,18 @@ fn inverse_is_exact_to_an_ulp_or_so() {
         let clipped = &fits(&x, &y, Extrapolation::CLIP)[0];
         assert_eq!(clipped.inverse(y[0] - (y[n - 1] - y[0])).unwrap(), x[0]);
     }
-    let flat = &fits(&[0.0, 1.0, 2.0], &[0.0, 1.0, 1.0], Extrapolation::Nan)[0];
+    let flat = &fits(&[0.0, 1.0, 2.0], &[0.0, 1.0, 1.0], Extrapolation::NAN)[0];
     assert!(flat.inverse(0.5).unwrap_err().to_string().contains("y[2] = 1"));
 }
 
 #[test]
 fn extrapolation_modes() {
     let (x, y) = csv("akima.csv");
-    for f in fits(&x, &y, Extrapolation::Polynomial) {
+    for f in fits(&x, &y, Extrapolation::POLYNOMIAL) {
         let end = x.len() - 1;
         for (at, k) in [(-1.0, 0), (17.0, end)] {
-            assert!(f.evaluate(at, 0, Some(Extrapolation::Nan)).is_nan());
-            assert!(f.evaluate(at, 1, Some(Extrapolation::Nan)).is_nan());
+            assert!(f.evaluate(at, 0, Some(Extrapolation::NAN)).is_nan());
+            assert!(f.evaluate(at, 1, Some(Extrapolation::NAN)).is_nan());
             assert_eq!(f.evaluate(at, 0, Some(Extrapolation::CLIP)), y[k]);
             assert_eq!(f.evaluate(at, 1, Some(Extrapolation::CLIP)), 0.0);
             let line = y[k] + f.slopes()[k] * (at - x[k]);
@@ -251,7 +238,7 @@ fn extrapolation_modes() {
             assert_eq!(f.evaluate(at, 1, Some(Extrapolation::LINEAR)), f.slopes()[k]);
             assert_eq!(f.evaluate(at, 2, Some(Extrapolation::LINEAR)), 0.0);
             // The derivative object follows the same modes.
-            for mode in [Extrapolation::CLIP, Extrapolation::LINEAR, Extrapolation::Nan] {
+            for mode in [Extrapolation::CLIP, Extrapolation::LINEAR, Extrapolation::NAN] {
                 let g = &fits(&x, &y, mode)[1];
                 for nu in 0..4 {
                     let (a, b) = (g.derivative(nu).evaluate(at, 0, None), g.evaluate(at, nu, None));

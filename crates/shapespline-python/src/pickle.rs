@@ -22,7 +22,7 @@ use crate::{
 };
 
 /// Raised whenever the layout changes; bytes of other versions are refused, not guessed at.
-const VERSION: u8 = 4;
+const VERSION: u8 = 5;
 
 /// Length of the checksum, a CRC-32 of everything before it.
 const CHECKSUM: usize = 4;
@@ -152,18 +152,18 @@ pub(crate) fn _from_bytes<'py>(py: Python<'py>, data: &[u8]) -> PyResult<Bound<'
         }
         Kind::Function => {
             let (layout, fits): (Layout, Fits) = detached(py, size, || whole(bytes))?;
-            if !(fits.is_sound() && fits.agree() && fits.len() == layout.columns()) {
+            if !(fits.is_sound() && fits.agree() && layout.is_of(fits.len())) {
                 return Err(damaged("lengths do not agree"));
             }
             let function = PiecewisePolynomial::of(fits, &Arc::new(layout));
             Ok(function.into_python(py)?.into_bound(py))
         }
         Kind::Rows => {
-            let fits: Fits = detached(py, size, || whole(bytes))?;
-            if !fits.is_sound() {
+            let (ragged, fits): (bool, Fits) = detached(py, size, || whole(bytes))?;
+            if !(fits.is_sound() && (ragged || fits.agree())) {
                 return Err(damaged("lengths do not agree"));
             }
-            Ok(PiecewiseRows::of(fits).into_python(py)?.into_bound(py))
+            Ok(PiecewiseRows::of(fits, ragged).into_python(py)?.into_bound(py))
         }
         Kind::Tangents => whole::<Tangents>(bytes)?.into_bound_py_any(py),
         Kind::ShapeRecord => whole::<ShapeRecord>(bytes)?.into_bound_py_any(py),

@@ -21,7 +21,7 @@ pub(super) struct Pass<'a> {
     pub(super) shape: &'a Shape,
 }
 
-/// What it makes, in the data's units.
+/// What it makes, in the data's units but for the slopes, which are scaled.
 pub(super) struct Made {
     pub(super) d: Vec<f64>,
     pub(super) e: Vec<f64>,
@@ -52,7 +52,6 @@ struct Scratch {
     failing: Failing,
     step: Numbers,
     q: [Numbers; 4],
-    slopes: Numbers,
     e: Numbers,
     lambda: Numbers,
     records: [Record; TILE],
@@ -71,7 +70,6 @@ impl Default for Scratch {
             failing: Failing::default(),
             step: zeros,
             q: [zeros; 4],
-            slopes: zeros,
             e: zeros,
             lambda: zeros,
             records: [Record::default(); TILE],
@@ -94,7 +92,9 @@ impl Pass<'_> {
             if !fine {
                 sound.store(false, Ordering::Relaxed);
             }
-            ((scratch.records, scratch.slopes), (scratch.e, scratch.lambda))
+            let mut d = [0.0; TILE];
+            d.copy_from_slice(&scratch.d[..TILE]);
+            ((scratch.records, d), (scratch.e, scratch.lambda))
         };
         let count = n.div_ceil(TILE);
         let ((records, d), (e, scale)): Tiles = if count <= 2 * TILES {
@@ -112,11 +112,11 @@ impl Pass<'_> {
         let (mut d, e, scale) = (numbers(d), numbers(e), numbers(scale));
         let mut records = records.into_flattened();
         records.truncate(n);
-        let end = self.units.slope().scale(self.end_slope(n));
+        let end = self.end_slope(n);
         // There is room unless all tiles are full; then for this one only, not for as many again.
         d.reserve_exact(1);
         d.push(end);
-        let sound = sound.into_inner() && end.is_finite();
+        let sound = sound.into_inner() && self.units.slope().scale(end).is_finite();
         Made { d, e, scale, records, sound }
     }
 
@@ -189,7 +189,7 @@ impl Pass<'_> {
             }
         }
         self.scales(start, n, scratch);
-        let Scratch { h, delta, d, full, step, q, slopes, e, lambda, records, .. } = scratch;
+        let Scratch { h, delta, d, full, step, q, e, lambda, records, .. } = scratch;
         // In the data's units.
         let (unit, slope) = (self.units.y(), self.units.slope());
         let [q0, q1, q2, _] = q;
@@ -203,10 +203,7 @@ impl Pass<'_> {
             let m = [unit.scale(h * d[j]), unit.scale(h * d[j + 1])];
             [q0[j], q1[j], q2[j]] = Record::quartic_form(step[j], m, e[j]);
         }
-        for j in 0..n {
-            slopes[j] = slope.scale(d[j]);
-        }
-        sound &= slopes[..n].iter().fold(true, |all, d| all & d.is_finite());
+        sound &= d[..n].iter().fold(true, |all, d| all & slope.scale(*d).is_finite());
         Record::assemble(x, y, q, records);
         sound
     }

@@ -1,6 +1,8 @@
 //! Data for the tests: the paper's neighbours' sets and random ones.
 #![allow(dead_code, clippy::unwrap_used)]
 
+use shapespline_monotone::*;
+
 /// A two-column file of tests/data.
 pub(crate) fn csv(name: &str) -> (Vec<f64>, Vec<f64>) {
     let path = format!("{}/../../tests/data/{name}", env!("CARGO_MANIFEST_DIR"));
@@ -12,6 +14,20 @@ pub(crate) fn csv(name: &str) -> (Vec<f64>, Vec<f64>) {
             (x.trim().parse::<f64>().unwrap(), y.trim().parse::<f64>().unwrap())
         })
         .unzip()
+}
+
+/// One interpolant of each family.
+pub(crate) fn fits(x: &[f64], y: &[f64], extrapolate: Extrapolation) -> Vec<MonotoneSpline> {
+    let q = QuarticOptions { extrapolate, ..QuarticOptions::default() };
+    let make = |slopes| {
+        let o = QuinticOptions { extrapolate, slopes, ..QuinticOptions::default() };
+        MonotoneQuintic::new(x, y, &o).unwrap().spline().clone()
+    };
+    vec![
+        MonotoneQuartic::new(x, y, &q).unwrap().spline().clone(),
+        make(Slopes::FritschButland),
+        make(Slopes::Optimal),
+    ]
 }
 
 /// A small generator, the same numbers on every machine.

@@ -31,8 +31,6 @@ impl PiecewisePolynomial {
         py: Python<'_>,
         #[pyo3(from_py_with = options::nu)] nu: usize,
     ) -> PyResult<Py<PyAny>> {
-        // One beyond the degree all are zero.
-        let nu = nu.min(self.fits.column(0).degree() + 1);
         Self::of(self.fits.derivative(py, nu), &self.layout).into_python(py)
     }
 
@@ -68,8 +66,9 @@ impl PiecewisePolynomial {
     /// Parameters
     /// ----------
     /// a, b : float
-    ///     Finite ends, in any order, also outside the knots.
-    /// extrapolate : {None, True, False, "linear", "clip"}
+    ///     The ends, in any order, also outside the knots. NaN gives NaN; ±∞ gives the limit, NaN where
+    ///     there is none.
+    /// extrapolate : {None, "linear", "clip", "periodic", True, False} or pair of them
     ///     As for a call.
     ///
     /// Returns
@@ -98,8 +97,9 @@ impl PiecewisePolynomial {
     ///
     /// Parameters
     /// ----------
-    /// extrapolate : {None, True, False, "linear", "clip"}
-    ///     As for a call: roots beyond the knots count where the function is defined there.
+    /// extrapolate : {None, "linear", "clip", "periodic", True, False} or pair of them
+    ///     As for a call: roots beyond the knots count where the function is defined there; of one
+    ///     that repeats, those on the knots.
     ///
     /// Returns
     /// -------
@@ -126,18 +126,22 @@ impl PiecewisePolynomial {
     /// ----------
     /// y : float
     ///     A finite value.
-    /// extrapolate : {None, True, False, "linear", "clip"}
-    ///     As for a call: solutions beyond the knots count where the function is defined there.
+    /// extrapolate : {None, "linear", "clip", "periodic", True, False} or pair of them
+    ///     As for a call: solutions beyond the knots count where the function is defined there; of one
+    ///     that repeats, those on the knots.
     ///
     /// Returns
     /// -------
     /// numpy.ndarray
     ///     Increasing, each once. Where f equals y on a whole segment: its start, then NaN, as SciPy
-    ///     does. For many columns an array of such arrays (dtype object).
+    ///     does; where it does so on a half line beyond the knots, the end knot alone. For many columns an
+    ///     array of such arrays (dtype object).
     ///
     /// Notes
     /// -----
-    /// Cost O(n); a segment is looked into only where its ends do not exclude y.
+    /// Every solution is verified: there f is y to some units in the last place of its values, or passes
+    /// y between the neighbouring floating-point numbers. Cost O(n); a segment is searched only where
+    /// its ends do not exclude y.
     ///
     /// Examples
     /// --------
@@ -162,17 +166,28 @@ impl PiecewisePolynomial {
         y: f64,
         mode: Option<Extrapolation>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let found = self.fits.map(py, |_, c: Column<'_>| c.solve(y, mode));
+        let mut found = self.fits.map(py, |_, c: Column<'_>| c.solve(y, mode));
         if self.layout.is_one() {
-            let only = found.into_iter().next().unwrap_or_default();
+            let only = found.pop().unwrap_or_default();
             return Ok(PyArray1::from_vec(py, only).into_any());
         }
-        let shape = PyTuple::new(py, self.layout.shape(&[]))?;
-        let out = py.import("numpy")?.call_method1("empty", (shape, "O"))?;
-        let flat = out.getattr("flat")?;
-        for (k, x) in found.into_iter().enumerate() {
-            flat.set_item(k, PyArray1::from_vec(py, x))?;
+        if self.layout.is_empty() {
+            found.clear();
         }
-        Ok(out)
+        arrays(py, found, &self.layout.shape(&[]))
     }
+}
+
+/// An array of arrays.
+pub(super) fn arrays<'py>(
+    py: Python<'py>,
+    values: Vec<Vec<f64>>,
+    shape: &[usize],
+) -> PyResult<Bound<'py, PyAny>> {
+    let out = py.import("numpy")?.call_method1("empty", (PyTuple::new(py, shape)?, "O"))?;
+    let flat = out.getattr("flat")?;
+    for (k, x) in values.into_iter().enumerate() {
+        flat.set_item(k, PyArray1::from_vec(py, x))?;
+    }
+    Ok(out)
 }

@@ -11,12 +11,18 @@ use crate::output::{FloatArray, shaped};
 
 impl PiecewisePolynomial {
     fn scipy_options<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let on = self.fits.column(0).extrapolation() == Extrapolation::Polynomial;
-        [("extrapolate", on)].into_py_dict(py)
+        let mode = self.fits.column(0).extrapolation();
+        if mode == Extrapolation::PERIODIC {
+            return [("extrapolate", "periodic")].into_py_dict(py);
+        }
+        [("extrapolate", mode == Extrapolation::POLYNOMIAL)].into_py_dict(py)
     }
+}
 
+#[pymethods]
+impl PiecewisePolynomial {
     /// Bernstein coefficients with SciPy's two axes (degree + 1, segments) in place of ours.
-    fn bernstein<'py>(&self, py: Python<'py>) -> PyResult<FloatArray<'py>> {
+    fn _bernstein<'py>(&self, py: Python<'py>) -> PyResult<FloatArray<'py>> {
         let first = self.fits.column(0);
         let (order, segments) = (first.degree() + 1, first.x().len() - 1);
         let mut values = vec![0.0; self.fits.len() * order * segments];
@@ -30,17 +36,14 @@ impl PiecewisePolynomial {
         let values = self.layout.join(values, order * segments);
         shaped(py, values, &self.layout.shape(&[order, segments]))
     }
-}
 
-#[pymethods]
-impl PiecewisePolynomial {
     /// The function as a piecewise polynomial of SciPy in Bernstein form.
     ///
     /// Returns
     /// -------
     /// scipy.interpolate.BPoly
-    ///     With the same ``axis``. Outside the knots it is the end polynomial where the function is,
-    ///     else NaN (SciPy knows no tangent line and no end value).
+    ///     With the same ``axis``. Outside the knots it is the end polynomial, or repeats, where the
+    ///     function does so on both sides, else NaN: SciPy knows no tangent line and no end value.
     ///
     /// Raises
     /// ------
@@ -58,7 +61,7 @@ impl PiecewisePolynomial {
         options.set_item("axis", self.layout.axis())?;
         let x = self.fits.column(0).x().to_vec();
         let n = x.len();
-        class.call((self.bernstein(py)?, shaped(py, x, &[n])?), Some(&options))
+        class.call((self._bernstein(py)?, shaped(py, x, &[n])?), Some(&options))
     }
 
     /// The function as a piecewise polynomial of SciPy in the power basis.

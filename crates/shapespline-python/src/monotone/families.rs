@@ -44,23 +44,18 @@ impl<'py> Data<'py> {
         Ok(Self { x, y, layout })
     }
 
-    /// One column after another: the caller's own numbers where they lie so.
+    /// One column after another: the caller's own numbers where they lie so. Where there is none, one of zeros, so that
+    /// x and the options are looked at as ever.
     fn columns<'a>(&'a self, copy: &'a mut Vec<f64>) -> &'a [f64] {
+        if self.layout.is_empty() {
+            *copy = vec![0.0; self.x.values().len()];
+            return copy;
+        }
         if self.layout.inner.iter().product::<usize>() == 1 {
             return self.y.values();
         }
         *copy = self.layout.split(self.y.values(), self.x.values().len());
         copy
-    }
-
-    /// Slopes of the column, from given ones in the shape of y.
-    fn slopes(&self, option: &SlopesOption) -> PyResult<Option<Vec<f64>>> {
-        let SlopesOption::Given { values, shape } = option else { return Ok(None) };
-        if shape != self.y.shape() {
-            let rule = format!("have the shape of y, {}", self.y.shape_text());
-            return Err(must("slopes", &[], rule, &shape[..]));
-        }
-        Ok(Some(self.layout.split(values, self.x.values().len())))
     }
 
     /// `fit(x, y, slopes, go_on)` of every column.
@@ -70,10 +65,13 @@ impl<'py> Data<'py> {
         slopes: &SlopesOption,
         fit: impl Fn(&[f64], &[f64], Slopes, GoOn<'_>) -> Result<F, MonotoneError> + Send + Sync,
     ) -> PyResult<Vec<F>> {
-        let given = self.slopes(slopes)?;
         let mut copy = Vec::new();
         let (x, y) = (self.x.values(), self.columns(&mut copy));
-        let n = x.len();
+        let (n, columns) = (x.len(), self.layout.columns().max(1));
+        let mut given = slopes.given(&self.y, [columns, n], |d| self.layout.split(d, n))?;
+        if let Some(given) = given.as_mut().filter(|_| self.layout.is_empty()) {
+            given.resize(n, 0.0);
+        }
         let one = |k: usize, go_on: GoOn<'_>| {
             let slopes = match (slopes, &given) {
                 (SlopesOption::Optimal, _) => Slopes::Optimal,
@@ -82,7 +80,7 @@ impl<'py> Data<'py> {
             };
             fit(x, &y[k * n..(k + 1) * n], slopes, go_on)
         };
-        let fits = fit_all(py, y.len(), self.layout.columns(), one)?;
+        let fits = fit_all(py, y.len(), columns, one)?;
         fits.map_err(|(k, error)| column_error(&error, &self.layout, k))
     }
 }
@@ -106,14 +104,17 @@ where
 ///     Data of any shape with n entries along ``axis``; every column is fitted, in parallel.
 /// axis : int
 ///     The axis of y that goes with x.
-/// slopes : {"fritsch-butland"} or array_like, in the shape of y
-///     Slopes at the knots: Fritsch and Butland's harmonic means, or given ones, which are limited to
-///     0 ≤ d ≤ 2Δ with Δ the smaller neighbouring secant slope.
+/// slopes : {"fritsch-butland"} or array_like, in the shape of y or (n,)
+///     Slopes at the knots: Fritsch and Butland's harmonic means, or given ones (of shape (n,) for every
+///     column), which are limited to 0 ≤ d ≤ 2Δ with Δ the smaller neighbouring secant slope.
 /// shape : float or pair of array_like, shape (n - 1,)
 ///     Starting value of α = β, or (α, β) of every segment; from 0 to 1e300. They are scaled by the
-///     largest λ in [0, 1] that keeps the segment monotone.
-/// extrapolate : {None, True, False, "linear", "clip"}
-///     Outside the knots: the end polynomial (None, True), NaN, the tangent line, the end value.
+///     largest λ in [0, 1] that keeps the segment monotone. With 1 cubics with exact slopes are
+///     reproduced, and the error is of order 3; the paper's 3 bends more and is of order 2.
+/// extrapolate : {"linear", "clip", "periodic", True, False} or pair of them
+///     Outside the knots: the tangent line at the end (then the function is C¹ and monotone everywhere),
+///     the end value, the function repeated, the end polynomial, NaN; of a pair the first below the
+///     knots, the second above. None is "linear".
 ///
 /// Raises
 /// ------
@@ -127,8 +128,9 @@ where
 /// -----
 /// Equations (3) and (15), conditions (12)–(13) and the four cases of Ng, Kong and Ong, *A class of
 /// Bézier-like splines in smooth monotone interpolation* (paper 003); slopes after Fritsch and
-/// Butland, SIAM J. Sci. Stat. Comput. 5 (1984) 300–304. Data that are not monotone are fitted
-/// piecewise; flats stay flat. Cost O(n), and a point moves at most four segments.
+/// Butland, SIAM J. Sci. Stat. Comput. 5 (1984) 300–304; at an end beside a turn or a flat that of the
+/// parabola through three points, as PCHIP has it. Data that are not monotone are fitted piecewise;
+/// flats stay flat. Cost O(n), and a point moves at most four segments.
 ///
 /// Examples
 /// --------
@@ -146,8 +148,9 @@ impl MonotoneQuartic {
     #[new]
     #[pyo3(
         signature = (x, y, axis=0, *, slopes=SlopesOption::FritschButland,
-                     shape=Shape::Uniform(3.0), extrapolate=None),
-        text_signature = "(x, y, axis=0, *, slopes='fritsch-butland', shape=3.0, extrapolate=None)"
+                     shape=Shape::Uniform(1.0), extrapolate=Some(Extrapolation::LINEAR)),
+        text_signature = "(x, y, axis=0, *, slopes='fritsch-butland', shape=1.0, \
+                          extrapolate='linear')"
     )]
     fn new(
         x: &Bound<'_, PyAny>,
@@ -182,13 +185,16 @@ impl MonotoneQuartic {
 ///     Data of any shape with n entries along ``axis``; every column is fitted, in parallel.
 /// axis : int
 ///     The axis of y that goes with x.
-/// slopes : {"optimal", "fritsch-butland"} or array_like, in the shape of y
+/// slopes : {"optimal", "fritsch-butland"} or array_like, in the shape of y or (n,)
 ///     Slopes at the knots: chosen together with the second derivatives; Fritsch and Butland's
-///     harmonic means (the paper's); or given ones, limited to what a monotone quintic allows.
+///     harmonic means (the paper's); or given ones (of shape (n,) for every column), limited to what
+///     a monotone quintic allows.
 /// fairness : {"bending", "parametric"}
 ///     What is least: ``∫ f''² dx``, or the paper's sum (20) over the segments' own parameters.
-/// extrapolate : {None, True, False, "linear", "clip"}
-///     Outside the knots: the end polynomial (None, True), NaN, the tangent line, the end value.
+/// extrapolate : {"linear", "clip", "periodic", True, False} or pair of them
+///     Outside the knots: the tangent line at the end (then the function is C¹ and monotone everywhere),
+///     the end value, the function repeated, the end polynomial, NaN; of a pair the first below the
+///     knots, the second above. None is "linear".
 ///
 /// Raises
 /// ------
@@ -223,8 +229,9 @@ impl MonotoneQuintic {
     #[new]
     #[pyo3(
         signature = (x, y, axis=0, *, slopes=SlopesOption::Optimal, fairness=Fairness::Bending,
-                     extrapolate=None),
-        text_signature = "(x, y, axis=0, *, slopes='optimal', fairness='bending', extrapolate=None)"
+                     extrapolate=Some(Extrapolation::LINEAR)),
+        text_signature = "(x, y, axis=0, *, slopes='optimal', fairness='bending', \
+                          extrapolate='linear')"
     )]
     fn new(
         x: &Bound<'_, PyAny>,
@@ -241,5 +248,11 @@ impl MonotoneQuintic {
             shapespline::monotone::MonotoneQuintic::new_with(x, y, &options, go_on)
         })?;
         Ok(object(Fits::Quintic(fits), data.layout, Self))
+    }
+
+    /// What was least: ``"bending"`` or ``"parametric"``.
+    #[getter]
+    fn fairness(slf: &Bound<'_, Self>) -> &'static str {
+        options::fairness_name(slf.as_super().as_super().get().fits.fairness().unwrap_or_default())
     }
 }

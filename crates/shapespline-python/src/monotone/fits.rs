@@ -6,7 +6,7 @@ use pyo3::{exceptions::PyKeyboardInterrupt, prelude::*};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use shapespline::monotone::{
-    Extrapolation, MonotoneError, MonotoneQuartic, MonotoneQuintic, MonotoneSpline,
+    Extrapolation, Fairness, MonotoneError, MonotoneQuartic, MonotoneQuintic, MonotoneSpline,
     PiecewisePolynomial,
 };
 
@@ -255,6 +255,14 @@ impl Fits {
     pub(crate) fn agree(&self) -> bool {
         let first = self.column(0);
         self.columns().all(|c| c.x().len() == first.x().len() && c.degree() == first.degree())
+    }
+
+    /// What quintics minimise.
+    pub(crate) fn fairness(&self) -> Option<Fairness> {
+        match self {
+            Self::Quintic(fits) => fits.first().map(|f| f.fairness()),
+            _ => None,
+        }
     }
 
     /// Whether what was read back can be asked anything without a panic.

@@ -32,6 +32,7 @@ use crate::{
 /// ('PiecewisePolynomial', 1.0)
 #[pyclass(module = "shapespline", frozen, subclass, weakref)]
 pub(crate) struct PiecewisePolynomial {
+    /// One a column, or one of zeros where there is no column.
     pub(crate) fits: Arc<Fits>,
     pub(crate) layout: Arc<Layout>,
 }
@@ -62,8 +63,11 @@ impl PiecewisePolynomial {
     pub(crate) fn each<'py>(
         &self,
         py: Python<'py>,
-        values: Vec<f64>,
+        mut values: Vec<f64>,
     ) -> PyResult<Bound<'py, PyAny>> {
+        if self.layout.is_empty() {
+            values.clear();
+        }
         match values[..] {
             [value] if self.layout.is_one() => value.into_bound_py_any(py),
             _ => Ok(shaped(py, values, &self.layout.shape(&[]))?.into_any()),
@@ -112,17 +116,26 @@ impl PiecewisePolynomial {
         self.fits.column(0).degree()
     }
 
+    /// What it is outside the knots, as the constructors take it. Derivatives and antiderivatives continue
+    /// what they are made of: ``"zero"`` is the derivative of a constant, ``"taylor-2"`` the antiderivative
+    /// of a line, ``"periodic-1"`` that of a repeating function.
+    #[getter]
+    fn extrapolate<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        options::extrapolation_name(py, self.fits.column(0).extrapolation())
+    }
+
     /// Evaluate the function or a derivative.
     ///
     /// Parameters
     /// ----------
     /// x : array_like
-    ///     Where, of any shape. NaN gives NaN.
+    ///     Where, of any shape. NaN gives NaN; ±∞ gives the limit, NaN where there is none.
     /// nu : int
     ///     Order of the derivative; 0 gives values.
-    /// extrapolate : {None, True, False, "linear", "clip"}
-    ///     What it is outside the knots: the end polynomial, NaN, the tangent line, the end value;
-    ///     None is what the function was made with.
+    /// extrapolate : {None, "linear", "clip", "periodic", True, False} or pair of them
+    ///     What it is outside the knots: the tangent line, the end value, the function repeated, the end
+    ///     polynomial, NaN; of a pair the first below, the second above. None is what the function was
+    ///     made with.
     ///
     /// Returns
     /// -------
@@ -177,7 +190,7 @@ impl PiecewisePolynomial {
         let this = slf.get();
         let column = this.fits.column(0);
         let (x, n) = (column.x(), column.x().len());
-        let columns = match this.fits.len() {
+        let columns = match this.layout.columns() {
             1 => String::new(),
             many => format!(", {many} columns"),
         };

@@ -35,11 +35,7 @@ impl Layout {
             return Err(must("axis", &[], rule, axis as i64));
         }
         let axis = axis.rem_euclid(axes).cast_unsigned();
-        let layout = Self { outer: shape[..axis].to_vec(), inner: shape[axis + 1..].to_vec() };
-        if layout.columns() == 0 {
-            return Err(must("y", &[], "have at least one column", y.shape()));
-        }
-        Ok(layout)
+        Ok(Self { outer: shape[..axis].to_vec(), inner: shape[axis + 1..].to_vec() })
     }
 
     pub(crate) fn axis(&self) -> usize {
@@ -50,10 +46,20 @@ impl Layout {
         self.outer.is_empty() && self.inner.is_empty()
     }
 
+    /// Whether there is no column, as of y of shape (n, 0).
+    pub(crate) fn is_empty(&self) -> bool {
+        self.outer.contains(&0) || self.inner.contains(&0)
+    }
+
     /// Number of columns (none if it does not fit, in damaged bytes).
     pub(crate) fn columns(&self) -> usize {
         let sizes = self.outer.iter().chain(&self.inner);
         sizes.copied().try_fold(1, usize::checked_mul).unwrap_or(0)
+    }
+
+    /// Whether so many fits are its columns: one of zeros where there is none.
+    pub(crate) fn is_of(&self, fits: usize) -> bool {
+        fits == if self.is_empty() { 1 } else { self.columns() }
     }
 
     /// The shape with these axes in place of the one of interpolation.
@@ -90,7 +96,13 @@ impl Layout {
     /// Column after column to C order.
     pub(crate) fn join(&self, values: Vec<f64>, each: usize) -> Vec<f64> {
         let inner: usize = self.inner.iter().product();
-        if inner == 1 { values } else { transpose(&values, inner, each) }
+        if self.is_empty() {
+            Vec::new()
+        } else if inner == 1 {
+            values
+        } else {
+            transpose(&values, inner, each)
+        }
     }
 }
 

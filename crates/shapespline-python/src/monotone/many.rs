@@ -12,7 +12,7 @@ use super::{
     rows::PiecewiseRows,
 };
 use crate::{
-    error::{Value, invalid, monotone_error, must},
+    error::{Value, invalid, monotone_error},
     input::{Array, Offsets, array, kind, text},
     options::choose,
     work::GoOn,
@@ -62,8 +62,42 @@ fn family(object: &Bound<'_, PyAny>) -> PyResult<Kind> {
     choose("kind", &name, &[("quintic", Kind::Quintic), ("quartic", Kind::Quartic)])
 }
 
+impl Kind {
+    /// Options that the kind lacks are refused, not ignored.
+    fn check(self, slopes: Option<&SlopesOption>, fairness: bool, shape: bool) -> PyResult<()> {
+        let refuse = |argument: &str, what: &str, own: &str, other: &str| {
+            let text = format!("{what} is for kind '{own}', got it with kind '{other}'");
+            Err(invalid(argument, &[], Value::Nothing, text))
+        };
+        match self {
+            Self::Quintic if shape => refuse("shape", "shape", "quartic", "quintic"),
+            Self::Quartic if fairness => refuse("fairness", "fairness", "quintic", "quartic"),
+            Self::Quartic if matches!(slopes, Some(SlopesOption::Optimal)) => {
+                refuse("slopes", "slopes='optimal'", "quintic", "quartic")
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+/// An option that may be left to the kind.
+fn optional<T>(
+    object: &Bound<'_, PyAny>,
+    read: impl Fn(&Bound<'_, PyAny>) -> PyResult<T>,
+) -> PyResult<Option<T>> {
+    if object.is_none() { Ok(None) } else { read(object).map(Some) }
+}
+
 fn slopes(object: &Bound<'_, PyAny>) -> PyResult<Option<SlopesOption>> {
-    if object.is_none() { Ok(None) } else { options::slopes(object).map(Some) }
+    optional(object, options::slopes)
+}
+
+fn fairness(object: &Bound<'_, PyAny>) -> PyResult<Option<Fairness>> {
+    optional(object, options::fairness)
+}
+
+fn shape(object: &Bound<'_, PyAny>) -> PyResult<Option<Shape>> {
+    optional(object, options::shape)
 }
 
 /// Fit monotone interpolants to many rows, each with its own x, in parallel.
@@ -77,12 +111,13 @@ fn slopes(object: &Bound<'_, PyAny>) -> PyResult<Option<SlopesOption>> {
 /// offsets : array_like of int, shape (rows + 1,), optional
 ///     Row k is ``x[offsets[k]:offsets[k + 1]]``, and so for y.
 /// slopes : {"optimal", "fritsch-butland"} or array_like, in the shape of y, optional
-///     As for the kind; None is its own default.
-/// fairness : {"bending", "parametric"}
-///     Of the quintic.
-/// shape : float
-///     Of the quartic.
-/// extrapolate : {None, True, False, "linear", "clip"}
+///     As for the kind; None is its own default. Where x and y have two axes, slopes of shape (n,) are
+///     for every row.
+/// fairness : {"bending", "parametric"}, optional
+///     For the quintic alone; None is "bending".
+/// shape : float or pair of array_like, optional
+///     For the quartic alone; None is 1.
+/// extrapolate : {"linear", "clip", "periodic", True, False} or pair of them
 ///     As for `MonotoneQuintic`.
 ///
 /// Returns
@@ -93,7 +128,7 @@ fn slopes(object: &Bound<'_, PyAny>) -> PyResult<Option<SlopesOption>> {
 /// Raises
 /// ------
 /// ValueError, TypeError
-///     As for the kind; the message names the row.
+///     As for the kind, where the message names the row; and for an option that the kind lacks.
 ///
 /// Notes
 /// -----
@@ -107,10 +142,10 @@ fn slopes(object: &Bound<'_, PyAny>) -> PyResult<Option<SlopesOption>> {
 /// array([1., 2.])
 #[pyfunction]
 #[pyo3(
-    signature = (x, y, kind=Kind::Quintic, *, offsets=None, slopes=None,
-                 fairness=Fairness::Bending, shape=Shape::Uniform(3.0), extrapolate=None),
-    text_signature = "(x, y, kind='quintic', *, offsets=None, slopes=None, fairness='bending', \
-                      shape=3.0, extrapolate=None)"
+    signature = (x, y, kind=Kind::Quintic, *, offsets=None, slopes=None, fairness=None,
+                 shape=None, extrapolate=Some(Extrapolation::LINEAR)),
+    text_signature = "(x, y, kind='quintic', *, offsets=None, slopes=None, fairness=None, \
+                      shape=None, extrapolate='linear')"
 )]
 // One argument a keyword: this is the signature that users see.
 #[allow(clippy::too_many_arguments)]
@@ -121,37 +156,42 @@ pub(crate) fn fit_many_monotone(
     #[pyo3(from_py_with = family)] kind: Kind,
     offsets: Option<Offsets>,
     #[pyo3(from_py_with = slopes)] slopes: Option<SlopesOption>,
-    #[pyo3(from_py_with = options::fairness)] fairness: Fairness,
-    #[pyo3(from_py_with = options::shape)] shape: Shape,
+    #[pyo3(from_py_with = fairness)] fairness: Option<Fairness>,
+    #[pyo3(from_py_with = shape)] shape: Option<Shape>,
     #[pyo3(from_py_with = options::extrapolate)] extrapolate: Option<Extrapolation>,
 ) -> PyResult<Py<PyAny>> {
     let (x, y) = (array("x", x)?, array("y", y)?);
+    let ragged = offsets.is_some();
     let bounds = offsets_of(&x, &y, offsets)?;
-    if let Some(SlopesOption::Given { shape, .. }) = &slopes
-        && shape != y.shape()
-    {
-        let rule = format!("have the shape of y, {}", y.shape_text());
-        return Err(must("slopes", &[], rule, &shape[..]));
-    }
+    kind.check(slopes.as_ref(), fairness.is_some(), shape.is_some())?;
+    let given = match &slopes {
+        // Rows of two axes may have their slopes in common.
+        Some(slopes) if !ragged => {
+            slopes.given(&y, [bounds.len() - 1, bounds[1]], <[f64]>::to_vec)?
+        }
+        Some(slopes) => slopes.given(&y, [1, y.values().len()], <[f64]>::to_vec)?,
+        None => None,
+    };
     let (x, y) = (x.values(), y.values());
-    let of = |from: usize, to: usize| match (&slopes, kind) {
-        (Some(SlopesOption::Given { values, .. }), _) => Slopes::Given(values[from..to].to_vec()),
-        (Some(SlopesOption::Optimal), _) | (None, Kind::Quintic) => Slopes::Optimal,
+    let of = |from: usize, to: usize| match (&slopes, &given, kind) {
+        (_, Some(given), _) => Slopes::Given(given[from..to].to_vec()),
+        (Some(SlopesOption::Optimal), ..) | (None, _, Kind::Quintic) => Slopes::Optimal,
         _ => Slopes::FritschButland,
     };
     let extrapolate = extrapolate.unwrap_or_default();
     let fits = match kind {
         Kind::Quintic => Fits::Quintic(fit_rows(py, &bounds, |from, to, go_on| {
+            let fairness = fairness.unwrap_or_default();
             let options = QuinticOptions { slopes: of(from, to), fairness, extrapolate };
             monotone::MonotoneQuintic::new_with(&x[from..to], &y[from..to], &options, go_on)
         })?),
         Kind::Quartic => Fits::Quartic(fit_rows(py, &bounds, |from, to, _| {
-            let slopes = of(from, to);
-            let options = QuarticOptions { slopes, shape: shape.clone(), extrapolate };
+            let (slopes, shape) = (of(from, to), shape.clone().unwrap_or_default());
+            let options = QuarticOptions { slopes, shape, extrapolate };
             monotone::MonotoneQuartic::new(&x[from..to], &y[from..to], &options)
         })?),
     };
-    PiecewiseRows::of(fits).into_python(py)
+    PiecewiseRows::of(fits, ragged).into_python(py)
 }
 
 fn fit_rows<F: Send>(

@@ -19,6 +19,7 @@ mod layout;
 mod many;
 mod options;
 mod places;
+mod row_calculus;
 mod rows;
 mod spline;
 

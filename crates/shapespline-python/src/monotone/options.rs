@@ -1,16 +1,17 @@
 //! Options of the monotone schemes by name, and errors with the place in y.
 
 use pyo3::{
+    IntoPyObjectExt,
     exceptions::{PyIndexError, PyOverflowError, PyTypeError},
     prelude::*,
-    types::PyBool,
+    types::{PyBool, PyList, PyTuple},
 };
-use shapespline::monotone::{Extrapolation, Fairness, MonotoneError, Shape};
+use shapespline::monotone::{Continuation, Extrapolation, Fairness, MonotoneError, Shape};
 
 use super::layout::Layout;
 use crate::{
-    error::{Refused, invalid, joined, must},
-    input::{Numbers, array, count, float, integer, kind, numbers, text},
+    error::{Refused, invalid, joined, must, tuple},
+    input::{Array, Numbers, array, count, float, integer, kind, numbers, text},
     options::{choose, unknown},
 };
 
@@ -40,31 +41,63 @@ pub(crate) fn column_error(error: &MonotoneError, layout: &Layout, k: usize) -> 
     refused.raise(text)
 }
 
-/// `extrapolate`: `None` leaves it to the object.
+const CONTINUATIONS: &str =
+    "'linear', 'clip', 'periodic', True, False, a pair (below, above) of them";
+
+/// `extrapolate`: `None` leaves it to the object, or to the default.
 pub(crate) fn extrapolate(object: &Bound<'_, PyAny>) -> PyResult<Option<Extrapolation>> {
     if object.is_none() {
         return Ok(None);
     }
-    let truth = |value| if value { Extrapolation::Polynomial } else { Extrapolation::Nan };
-    if let Ok(value) = object.cast::<PyBool>() {
-        return Ok(Some(truth(value.is_true())));
+    if object.is_instance_of::<PyTuple>() || object.is_instance_of::<PyList>() {
+        let length = object.len()?;
+        if length != 2 {
+            let text = format!("extrapolate must be one of {CONTINUATIONS}; got {length} entries");
+            return Err(invalid("extrapolate", &[], length, text));
+        }
+        let side = |k: usize| continuation(&object.get_item(k)?);
+        return Ok(Some(Extrapolation { below: side(0)?, above: side(1)? }));
     }
+    continuation(object).map(|both| Some(both.into()))
+}
+
+fn continuation(object: &Bound<'_, PyAny>) -> PyResult<Continuation> {
     if let Some(name) = text(object) {
-        let modes = [("linear", Extrapolation::LINEAR), ("clip", Extrapolation::CLIP)];
-        return modes
-            .iter()
-            .find(|(known, _)| *known == name)
-            .map(|(_, m)| Some(*m))
-            .ok_or_else(|| unknown("extrapolate", &name, "None, True, False, 'linear', 'clip'"));
+        return match name.as_str() {
+            "linear" => Ok(Continuation::Taylor(1)),
+            "clip" => Ok(Continuation::Taylor(0)),
+            "periodic" => Ok(Continuation::Periodic(0)),
+            _ => Err(unknown("extrapolate", &name, CONTINUATIONS)),
+        };
     }
     // NumPy's own bool is none of Python's.
-    match object.extract::<bool>() {
-        Ok(value) => Ok(Some(truth(value))),
-        Err(_) => Err(PyTypeError::new_err(format!(
-            "extrapolate must be None, True, False, 'linear' or 'clip', got {}",
+    let truth = object.cast::<PyBool>().map(|value| value.is_true());
+    match truth.map_or_else(|_| object.extract::<bool>().ok(), Some) {
+        Some(true) => Ok(Continuation::Polynomial),
+        Some(false) => Ok(Continuation::Nan),
+        None => Err(PyTypeError::new_err(format!(
+            "extrapolate must be one of {CONTINUATIONS}, got {}",
             kind(object)
         ))),
     }
+}
+
+/// An extrapolation as Python gives it; those of derivatives and antiderivatives have names of their own.
+pub(crate) fn extrapolation_name(
+    py: Python<'_>,
+    Extrapolation { below, above }: Extrapolation,
+) -> PyResult<Bound<'_, PyAny>> {
+    let name = |side| match side {
+        Continuation::Polynomial => true.into_bound_py_any(py),
+        Continuation::Nan => false.into_bound_py_any(py),
+        Continuation::Zero => "zero".into_bound_py_any(py),
+        Continuation::Taylor(0) => "clip".into_bound_py_any(py),
+        Continuation::Taylor(1) => "linear".into_bound_py_any(py),
+        Continuation::Taylor(k) => format!("taylor-{k}").into_bound_py_any(py),
+        Continuation::Periodic(0) => "periodic".into_bound_py_any(py),
+        Continuation::Periodic(k) => format!("periodic-{k}").into_bound_py_any(py),
+    };
+    if below == above { name(below) } else { (name(below)?, name(above)?).into_bound_py_any(py) }
 }
 
 pub(crate) fn fairness(object: &Bound<'_, PyAny>) -> PyResult<Fairness> {
@@ -75,11 +108,38 @@ pub(crate) fn fairness(object: &Bound<'_, PyAny>) -> PyResult<Fairness> {
     choose("fairness", &name, &energies)
 }
 
-/// `slopes`: a name, or the numbers in the shape of y.
+pub(crate) fn fairness_name(fairness: Fairness) -> &'static str {
+    match fairness {
+        Fairness::Bending => "bending",
+        Fairness::Parametric => "parametric",
+    }
+}
+
+/// `slopes`: a name, or the numbers in the shape of y or of one column.
 pub(crate) enum SlopesOption {
     FritschButland,
     Optimal,
     Given { values: Vec<f64>, shape: Vec<usize> },
+}
+
+impl SlopesOption {
+    /// Given slopes in the shape of y, `columns` times those of one of `n` points where these are given for all.
+    pub(crate) fn given(
+        &self,
+        y: &Array<'_>,
+        [columns, n]: [usize; 2],
+        split: impl Fn(&[f64]) -> Vec<f64>,
+    ) -> PyResult<Option<Vec<f64>>> {
+        let Self::Given { values, shape } = self else { return Ok(None) };
+        if shape == y.shape() {
+            return Ok(Some(split(values)));
+        }
+        if *shape == [n] {
+            return Ok(Some(values.repeat(columns)));
+        }
+        let rule = format!("have the shape of y, {}, or {}", y.shape_text(), tuple(&[n]));
+        Err(must("slopes", &[], rule, &shape[..]))
+    }
 }
 
 pub(crate) fn slopes(object: &Bound<'_, PyAny>) -> PyResult<SlopesOption> {
@@ -140,10 +200,10 @@ pub(crate) fn finite(argument: &str, object: &Bound<'_, PyAny>) -> PyResult<f64>
     Err(must(argument, &[], "be finite", value))
 }
 pub(crate) fn a(object: &Bound<'_, PyAny>) -> PyResult<f64> {
-    finite("a", object)
+    float("a", object)
 }
 pub(crate) fn b(object: &Bound<'_, PyAny>) -> PyResult<f64> {
-    finite("b", object)
+    float("b", object)
 }
 pub(crate) fn y(object: &Bound<'_, PyAny>) -> PyResult<f64> {
     finite("y", object)

@@ -85,19 +85,19 @@ impl Arrangement {
     }
 }
 
-/// The end of an integral: a number, or one a row.
-pub(super) fn end(argument: &str, object: &Bound<'_, PyAny>, rows: usize) -> PyResult<Vec<f64>> {
-    let values = match numbers(argument, object)? {
-        Numbers::One(value) => vec![value; rows],
-        Numbers::Many(values) if values.len() == rows => values,
+/// A number for all rows, or one per row.
+pub(super) fn per_row(
+    argument: &str,
+    object: &Bound<'_, PyAny>,
+    rows: usize,
+) -> PyResult<Vec<f64>> {
+    match numbers(argument, object)? {
+        Numbers::One(value) => Ok(vec![value; rows]),
+        Numbers::Many(values) if values.len() == rows => Ok(values),
         Numbers::Many(values) => {
             let rule = format!("be a number or one for each of {rows} rows");
-            return Err(must(argument, &[], rule, values.len()));
+            Err(must(argument, &[], rule, values.len()))
         }
-    };
-    match values.iter().position(|v| !v.is_finite()) {
-        None => Ok(values),
-        Some(row) => Err(must(argument, &[row], "be finite", values[row])),
     }
 }
 

@@ -7,7 +7,7 @@ use pyo3::{
     exceptions::{PyIndexError, PyTypeError},
     prelude::*,
 };
-use shapespline::monotone::{Extrapolation, MonotoneError};
+use shapespline::monotone::{Extrapolation, MonotoneError, MonotoneSpline};
 
 use super::{
     diagnostics::MonotoneDiagnostics,
@@ -15,7 +15,7 @@ use super::{
     function::PiecewisePolynomial,
     layout::Layout,
     options,
-    places::{Arrangement, Places, end},
+    places::{Arrangement, Places},
     spline::{diagnostics, energies},
 };
 use crate::{
@@ -39,12 +39,29 @@ use crate::{
 /// array([1. , 0.5])
 #[pyclass(module = "shapespline", frozen, sequence, subclass, weakref)]
 pub(crate) struct PiecewiseRows {
-    fits: Arc<Fits>,
+    pub(super) fits: Arc<Fits>,
+    /// Whether the rows came one after another, with offsets, and not as an array of two axes.
+    pub(super) ragged: bool,
 }
 
 impl PiecewiseRows {
-    pub(crate) fn of(fits: Fits) -> Self {
-        Self { fits: Arc::new(fits) }
+    pub(crate) fn of(fits: Fits, ragged: bool) -> Self {
+        Self { fits: Arc::new(fits), ragged }
+    }
+
+    /// One number per point, in the arrangement of the data.
+    fn nodal<'py>(
+        &self,
+        py: Python<'py>,
+        of: impl Fn(Column<'_>) -> Vec<f64>,
+    ) -> PyResult<FloatArray<'py>> {
+        let values: Vec<f64> = self.fits.columns().flat_map(of).collect();
+        let (rows, total) = (self.fits.len(), values.len());
+        if self.ragged {
+            shaped(py, values, &[total])
+        } else {
+            shaped(py, values, &[rows, total / rows])
+        }
     }
 
     /// The object of the class that the fits are of.
@@ -90,6 +107,19 @@ impl PiecewiseRows {
         ))
     }
 
+    /// Knots of all rows, in the arrangement of the data: of shape (rows, n), or with offsets one row after
+    /// another; a fresh array.
+    #[getter]
+    fn x<'py>(&self, py: Python<'py>) -> PyResult<FloatArray<'py>> {
+        self.nodal(py, |f| f.x().to_vec())
+    }
+
+    /// What all rows are outside their knots, as `PiecewisePolynomial.extrapolate`.
+    #[getter]
+    fn extrapolate<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        options::extrapolation_name(py, self.fits.column(0).extrapolation())
+    }
+
     /// Evaluate every row, or a derivative.
     ///
     /// Parameters
@@ -99,7 +129,7 @@ impl PiecewiseRows {
     ///     With ``offsets`` one axis: the places of all rows one after another.
     /// nu : int
     ///     Order of the derivative.
-    /// extrapolate : {None, True, False, "linear", "clip"}
+    /// extrapolate : {None, "linear", "clip", "periodic", True, False} or pair of them
     ///     As for a call of `MonotoneQuintic`.
     /// offsets : array_like of int, shape (rows + 1,), optional
     ///     Row k is evaluated at ``x[offsets[k]:offsets[k + 1]]``.
@@ -143,102 +173,6 @@ impl PiecewiseRows {
         })
     }
 
-    /// The derivatives of all rows as functions.
-    ///
-    /// Parameters
-    /// ----------
-    /// nu : int
-    ///     Their order.
-    ///
-    /// Returns
-    /// -------
-    /// PiecewiseRows
-    ///     Row by row what `PiecewisePolynomial.derivative` gives. Cost O(total).
-    ///
-    /// Examples
-    /// --------
-    /// >>> import shapespline as ss
-    /// >>> f = ss.fit_many_monotone([[0, 1, 2], [0, 2, 4]], [[0, 1, 2], [0, 1, 2]])
-    /// >>> f.derivative()([0.5, 1.5])
-    /// array([[1. , 1. ],
-    ///        [0.5, 0.5]])
-    #[pyo3(signature = (nu=1))]
-    fn derivative(
-        &self,
-        py: Python<'_>,
-        #[pyo3(from_py_with = options::nu)] nu: usize,
-    ) -> PyResult<Py<PyAny>> {
-        // One beyond the degree all are zero.
-        let nu = nu.min(self.fits.column(0).degree() + 1);
-        Self::of(self.fits.derivative(py, nu)).into_python(py)
-    }
-
-    /// Antiderivatives of all rows as functions: zero at their first knots.
-    ///
-    /// Parameters
-    /// ----------
-    /// nu : int
-    ///     How often to integrate; at most 100.
-    ///
-    /// Returns
-    /// -------
-    /// PiecewiseRows
-    ///     Row by row what `PiecewisePolynomial.antiderivative` gives. Cost O(total).
-    ///
-    /// Examples
-    /// --------
-    /// >>> import shapespline as ss
-    /// >>> f = ss.fit_many_monotone([[0, 1, 2], [0, 2, 4]], [[0, 1, 2], [0, 1, 2]])
-    /// >>> f.antiderivative()(2.0).round(12)
-    /// array([2., 1.])
-    #[pyo3(signature = (nu=1))]
-    fn antiderivative(
-        &self,
-        py: Python<'_>,
-        #[pyo3(from_py_with = options::integrals)] nu: usize,
-    ) -> PyResult<Py<PyAny>> {
-        Self::of(self.fits.antiderivative(py, nu)).into_python(py)
-    }
-
-    /// The definite integral of every row.
-    ///
-    /// Parameters
-    /// ----------
-    /// a, b : float or array_like, shape (rows,)
-    ///     Finite ends, in any order, also outside the knots: for all rows, or one a row.
-    /// extrapolate : {None, True, False, "linear", "clip"}
-    ///     As for a call.
-    ///
-    /// Returns
-    /// -------
-    /// numpy.ndarray, shape (rows,)
-    ///     One number a row. Cost O(log n) a row after a first call of O(n).
-    ///
-    /// Raises
-    /// ------
-    /// ValueError, TypeError
-    ///     If an end is not finite, or there are not as many as rows.
-    ///
-    /// Examples
-    /// --------
-    /// >>> import shapespline as ss
-    /// >>> f = ss.fit_many_monotone([[0, 1, 2], [0, 2, 4]], [[0, 1, 2], [0, 1, 2]])
-    /// >>> f.integrate(0, [2, 4]).round(12)
-    /// array([2., 4.])
-    #[pyo3(signature = (a, b, extrapolate=None))]
-    fn integrate<'py>(
-        &self,
-        py: Python<'py>,
-        a: &Bound<'py, PyAny>,
-        b: &Bound<'py, PyAny>,
-        #[pyo3(from_py_with = options::extrapolate)] extrapolate: Option<Extrapolation>,
-    ) -> PyResult<FloatArray<'py>> {
-        let rows = self.fits.len();
-        let (a, b) = (end("a", a, rows)?, end("b", b, rows)?);
-        let values = self.fits.map(py, |k, f| f.integrate(a[k], b[k], extrapolate));
-        shaped(py, values, &[rows])
-    }
-
     fn __len__(&self) -> usize {
         self.fits.len()
     }
@@ -265,7 +199,9 @@ impl PiecewiseRows {
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
-        pickle::reduce(py, Kind::Rows, |bytes| postcard::to_extend(self.fits.as_ref(), bytes))
+        pickle::reduce(py, Kind::Rows, |bytes| {
+            postcard::to_extend(&(self.ragged, self.fits.as_ref()), bytes)
+        })
     }
 
     fn __copy__(slf: Py<Self>) -> Py<Self> {
@@ -290,6 +226,18 @@ impl PiecewiseRows {
 #[pyclass(module = "shapespline", frozen, extends = PiecewiseRows)]
 pub(crate) struct MonotoneRows;
 
+impl MonotoneRows {
+    fn nodal<'py>(
+        slf: &Bound<'py, Self>,
+        of: impl Fn(&MonotoneSpline) -> Vec<f64>,
+    ) -> PyResult<FloatArray<'py>> {
+        slf.as_super().get().nodal(slf.py(), |column| match column {
+            Column::Spline(f) => of(f),
+            Column::Pieces(_) => Vec::new(),
+        })
+    }
+}
+
 #[pymethods]
 impl MonotoneRows {
     #[new]
@@ -297,12 +245,38 @@ impl MonotoneRows {
         Err(PyTypeError::new_err("MonotoneRows is what fit_many_monotone gives: call that"))
     }
 
-    /// The inverse functions: in every row the x between its knots with f(x) = y.
+    /// The data, in their arrangement; a fresh array.
+    #[getter]
+    fn y<'py>(slf: &Bound<'py, Self>) -> PyResult<FloatArray<'py>> {
+        Self::nodal(slf, |f| f.y().to_vec())
+    }
+
+    /// Slopes at the knots, in the arrangement of the data; a fresh array.
+    #[getter]
+    fn slopes<'py>(slf: &Bound<'py, Self>) -> PyResult<FloatArray<'py>> {
+        Self::nodal(slf, MonotoneSpline::slopes)
+    }
+
+    /// Second derivatives at the knots, as `MonotoneSpline.second_derivatives`, in the arrangement of the
+    /// data; a fresh array.
+    #[getter]
+    fn second_derivatives<'py>(slf: &Bound<'py, Self>) -> PyResult<FloatArray<'py>> {
+        Self::nodal(slf, MonotoneSpline::second_derivatives)
+    }
+
+    /// What the quintics minimise: ``"bending"`` or ``"parametric"``; None of quartics.
+    #[getter]
+    fn fairness(slf: &Bound<'_, Self>) -> Option<&'static str> {
+        slf.as_super().get().fits.fairness().map(options::fairness_name)
+    }
+
+    /// The inverse functions: in every row the x with f(x) = y.
     ///
     /// Parameters
     /// ----------
     /// y : array_like
-    ///     Values, arranged as the places of a call. NaN, and values outside a row's range, give NaN.
+    ///     Values, arranged as the places of a call. NaN gives NaN; outside a row's range as
+    ///     `MonotoneSpline.inverse`.
     /// offsets : array_like of int, shape (rows + 1,), optional
     ///     As for a call.
     ///

@@ -80,7 +80,7 @@ impl MonotoneSpline {
     /// Slopes at the knots, in the shape of y; a fresh array.
     #[getter]
     fn slopes<'py>(slf: &Bound<'py, Self>) -> PyResult<FloatArray<'py>> {
-        Self::nodal(slf, |f| f.slopes().to_vec())
+        Self::nodal(slf, monotone::MonotoneSpline::slopes)
     }
 
     /// Second derivatives at the knots, in the shape of y (of the quartic, which is C¹, from the
@@ -116,6 +116,9 @@ impl MonotoneSpline {
     fn diagnostics<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
         let base = slf.as_super().get();
         let mut all = diagnostics(&base.fits);
+        if base.layout.is_empty() {
+            all.clear();
+        }
         match all.pop() {
             Some(only) if base.layout.is_one() => only.into_bound_py_any(slf.py()),
             last => {
@@ -125,12 +128,14 @@ impl MonotoneSpline {
         }
     }
 
-    /// The inverse function: the x between the knots with f(x) = y.
+    /// The inverse function: the x with f(x) = y.
     ///
     /// Parameters
     /// ----------
     /// y : array_like
-    ///     Values, of any shape. NaN, and values outside the data's range, give NaN.
+    ///     Values, of any shape. NaN gives NaN. Outside the data's range what ``extrapolate`` of the
+    ///     function says for that end: of the tangent line its inverse (NaN where it is level), with
+    ///     ``"clip"`` the end knot, else NaN.
     ///
     /// Returns
     /// -------
@@ -150,7 +155,7 @@ impl MonotoneSpline {
     /// Examples
     /// --------
     /// >>> import shapespline as ss
-    /// >>> cdf = ss.MonotoneQuintic([0, 1, 3], [0, 0.5, 1])
+    /// >>> cdf = ss.MonotoneQuintic([0, 1, 3], [0, 0.5, 1], extrapolate=False)
     /// >>> cdf.inverse([0.0, 0.5, 1.0, 1.5])
     /// array([ 0.,  1.,  3., nan])
     #[pyo3(signature = (y))]
@@ -160,7 +165,7 @@ impl MonotoneSpline {
             return Err(PyTypeError::new_err("inverse is for interpolants"));
         };
         if !base.layout.is_one() {
-            let columns = base.fits.len();
+            let columns = base.layout.columns();
             let text = format!(
                 "inverse needs data with one axis; y has {} and {columns} columns",
                 base.layout.outer.len() + base.layout.inner.len() + 1,

@@ -1,8 +1,9 @@
 //! Functions of one variable.
 
 use shapespline::monotone::{
-    BezierLike, Extrapolation, Fairness, MonotoneError, MonotoneMany, MonotoneQuartic,
-    MonotoneQuintic, QuarticOptions, QuinticOptions, Shape, Slopes, bezier_like::cubic_basis,
+    BezierLike, Continuation, Extrapolation, Fairness, MonotoneError, MonotoneMany,
+    MonotoneQuartic, MonotoneQuintic, QuarticOptions, QuinticOptions, Shape, Slopes,
+    bezier_like::cubic_basis,
 };
 
 use super::{Bytes, readable};
@@ -63,13 +64,20 @@ fn slopes(bytes: &mut Bytes<'_>, n: usize) -> Slopes {
 }
 
 fn extrapolation(bytes: &mut Bytes<'_>) -> Extrapolation {
-    match bytes.below(6) {
-        0 => Extrapolation::Nan,
-        1 => Extrapolation::LINEAR,
-        2 => Extrapolation::CLIP,
-        3 => Extrapolation::Taylor(bytes.byte()),
-        4 => Extrapolation::Zero,
-        _ => Extrapolation::Polynomial,
+    let below = continuation(bytes);
+    let above = if bytes.flag() { below } else { continuation(bytes) };
+    Extrapolation { below, above }
+}
+
+fn continuation(bytes: &mut Bytes<'_>) -> Continuation {
+    match bytes.below(7) {
+        0 => Continuation::Nan,
+        1 => Continuation::Taylor(1),
+        2 => Continuation::Taylor(0),
+        3 => Continuation::Taylor(bytes.byte().into()),
+        4 => Continuation::Zero,
+        5 => Continuation::Periodic(0),
+        _ => Continuation::Polynomial,
     }
 }
 
@@ -125,23 +133,23 @@ fn calculus(bytes: &mut Bytes<'_>, f: &shapespline::monotone::MonotoneSpline, qu
         let _ = antiderivative.evaluate(q, bytes.below(3), mode);
         let _ = f.integrate(q, queries[bytes.below(queries.len())], mode);
     }
-    for mode in [None, mode] {
-        let _ = f.roots(mode);
-        let _ = derivative.roots(mode);
-    }
-    // Every solution between the ends is one, as well as a neighbouring x can say.
-    let inside = Some(Extrapolation::Nan);
+    let size = y.iter().fold(0.0f64, |m, y| m.max(y.abs()));
+    let steepest = derivative.coefficients().iter().fold(0.0f64, |m, d| m.max(d.abs()));
     let level = y[bytes.below(y.len())] * bytes.fraction();
-    for s in f.solve(level, inside).into_iter().filter(|s| !s.is_nan()) {
-        assert!(s >= x[0] && s <= x[x.len() - 1], "{s} outside");
-        let around = [s.next_down(), s, s.next_up()].map(|s| f.evaluate(s, 0, inside));
-        let size = y.iter().fold(0.0f64, |m, y| m.max(y.abs()));
-        let slack = (1e-9 * size).max(1e-320);
-        let near = around.iter().any(|v| (v - level).abs() <= slack);
-        // On a cliff neighbouring numbers have values on both sides.
-        let jump = around.windows(2).any(|v| v[0].min(v[1]) <= level && level <= v[0].max(v[1]));
-        assert!(near || jump, "f({s}) = {around:?}, not {level}");
+    let grown = |s: f64| {
+        let n = x.len() - 1;
+        let out = ((x[0] - s) / (x[1] - x[0])).max((s - x[n]) / (x[n] - x[n - 1])).max(0.0);
+        (1.0 + out).powi(5)
+    };
+    for mode in [None, mode, Some(Extrapolation::NAN)] {
+        let value = |s| f.evaluate(s, 0, mode);
+        let slope = |s| derivative.evaluate(s, 0, mode);
+        solutions(value, level, &f.solve(level, mode), |s| size * grown(s));
+        solutions(value, 0.0, &f.roots(mode), |s| size * grown(s));
+        solutions(slope, 0.0, &derivative.roots(mode), |s| steepest * grown(s));
     }
+    let inside = f.solve(level, Some(Extrapolation::NAN)).into_iter().filter(|s| !s.is_nan());
+    inside.for_each(|s| assert!(s >= x[0] && s <= x[x.len() - 1], "{s} outside"));
     let [first, last] = [y[0], y[y.len() - 1]];
     // Rounding may lead beyond the last value, where there is no answer.
     let level =
@@ -150,6 +158,18 @@ fn calculus(bytes: &mut Bytes<'_>, f: &shapespline::monotone::MonotoneSpline, qu
         // Halfway between values that overflow there is nothing to look for.
         Ok(s) => assert!(level.is_infinite() || (x[0] <= s && s <= x[x.len() - 1]), "{level}: {s}"),
         Err(error) => readable(&error),
+    }
+}
+
+/// Every solution is one, as well as a neighbouring x can say; `size` is that of the terms of f.
+fn solutions(f: impl Fn(f64) -> f64, level: f64, found: &[f64], size: impl Fn(f64) -> f64) {
+    for s in found.iter().filter(|s| !s.is_nan()) {
+        let around = [s.next_down(), *s, s.next_up()].map(&f);
+        let slack = (1e-9 * size(*s)).max(1e-320);
+        let near = around.iter().any(|v| (v - level).abs() <= slack);
+        // On a cliff neighbouring numbers have values on both sides.
+        let jump = around.windows(2).any(|v| v[0].min(v[1]) <= level && level <= v[0].max(v[1]));
+        assert!(near || jump, "f({s:e}) = {around:?}, not {level}");
     }
 }
 
