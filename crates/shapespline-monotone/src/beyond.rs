@@ -4,7 +4,8 @@ use crate::bernstein;
 use crate::extrapolation::Continuation;
 use crate::roots::{horner, outward_roots, verified};
 
-/// `Σ aₖ τᵏ`, with the distance τ ≥ 0 from the end knot in lengths of the end segment; ±∞ is answered by the limit.
+/// `Σ aₖ τᵏ`, where τ ≥ 0 is the distance from the end knot divided by the length of the end segment. At x = ±∞ its value is
+/// the limit.
 #[derive(Debug, Clone)]
 pub(crate) struct Beyond {
     a: Vec<f64>,
@@ -15,9 +16,8 @@ pub(crate) struct Beyond {
 }
 
 impl Beyond {
-    /// From the Bernstein coefficients of the end segment, less a `base` that keeps an offset of the data from costing
-    /// digits, and what rounding of the data makes of coefficients; none where the function does not continue as a
-    /// polynomial.
+    /// The polynomial with Bernstein coefficients `base + c` on the end segment (a large base would cost c its digits), and
+    /// `data`, the error in c that rounding of the data causes. `None` if the function does not continue as a polynomial.
     pub(crate) fn new(
         c: &[f64],
         [base, data]: [f64; 2],
@@ -63,7 +63,8 @@ impl Beyond {
         (0..nu).fold(horner(&a, self.tau(x)), |v, _| v / self.h)
     }
 
-    /// `∫ₐᵇ` over a part beyond the knot. About the nearer end, so that far from the knot nothing cancels.
+    /// `∫ₐᵇ` over an interval beyond the knot. The polynomial is expanded about the nearer end, so that nothing cancels far
+    /// from the knot.
     pub(crate) fn integrate(&self, a: f64, b: f64) -> f64 {
         let (near, far) = if self.h > 0.0 { (a, b) } else { (b, a) };
         let (tau, width) = (self.tau(near), (far - near) / self.h);
@@ -78,7 +79,7 @@ impl Beyond {
         }
         let terms: Vec<f64> = c.iter().enumerate().map(|(k, c)| c / (k + 1) as f64).collect();
         let mean = horner(&terms, width);
-        // Zero over an infinite width stays zero.
+        // The integral of zero over an infinite width is zero, not NaN.
         if mean == 0.0 { 0.0 } else { mean * (width * self.h.abs()) }
     }
 
@@ -101,11 +102,11 @@ impl Beyond {
     }
 }
 
-/// Leave out leading coefficients that are of rounding size: the k-th is a sum of Bernstein coefficients with weights whose
-/// sizes sum to `C(n, k) 2ᵏ`. Beyond the slope, which is taken as it is, the rounding of the data counts too: through points
-/// on a line at y ~ 1e6 the end polynomial is that line.
+/// Drop leading coefficients that are of rounding size. The k-th is a sum of Bernstein coefficients whose weights have
+/// absolute values that sum to `C(n, k) 2ᵏ`. From k = 2 on the rounding of the data counts too, so that the end polynomial
+/// through points on a line is that line.
 fn trim(a: &mut Vec<f64>, c: &[f64], data: f64) {
-    /// What the coefficients themselves may be off by, in units of the largest.
+    /// Error of the Bernstein coefficients, relative to the largest: they are sums of a few rounded terms.
     const NOISE: f64 = 4.0 * f64::EPSILON;
     let n = c.len() - 1;
     let size = c.iter().fold(0.0f64, |size, c| size.max(c.abs()));

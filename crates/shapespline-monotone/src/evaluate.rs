@@ -133,7 +133,7 @@ impl MonotoneSpline {
             }
             (Continuation::Taylor(0), 0) => return self.y[end],
             (Continuation::Taylor(1), 0) => {
-                // A level line stays level however far.
+                // A level line has the end value even at ±∞.
                 let rise = self.d[end] * self.units.spacing().scale(x - self.x[end]);
                 return self.y[end]
                     + if self.d[end] == 0.0 { 0.0 } else { self.units.y().scale(rise) };

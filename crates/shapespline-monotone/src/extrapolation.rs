@@ -6,8 +6,8 @@ use crate::MonotoneError;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Continuation {
-    /// The polynomial of the end segment (SciPy's `True`). Leading coefficients of rounding size are left out: far away
-    /// they would decide.
+    /// The polynomial of the end segment (SciPy's `True`), without leading coefficients of rounding size, which would decide
+    /// its values far away.
     Polynomial,
     /// NaN (SciPy's `False`).
     Nan,
@@ -15,8 +15,8 @@ pub enum Continuation {
     Zero,
     /// The Taylor polynomial of this degree about the end knot: 0 is the end value, 1 the tangent line.
     Taylor(usize),
-    /// The function on its knots repeats: of one that is an antiderivative of so high an order of such a function, up to
-    /// the polynomials that accumulate from period to period.
+    /// The function repeats with the period of its knots (order 0), or is the antiderivative of this order of a function that
+    /// repeats.
     Periodic(usize),
 }
 
@@ -44,8 +44,8 @@ impl Continuation {
     }
 }
 
-/// What a function is outside its knots; the tangent lines by default, with which monotone functions stay C¹ and monotone
-/// everywhere.
+/// What a function is outside its knots. By default it follows the tangent lines, with which monotone functions are C¹ and
+/// monotone everywhere.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Extrapolation {

@@ -1,16 +1,16 @@
-//! Functions that repeat, and their antiderivatives, which repeat up to polynomials that accumulate.
+//! Periodic functions, and their antiderivatives, which repeat up to polynomials that accumulate from period to period.
 //!
 //! Let G be an antiderivative of order m of a function of period T that starts at x₀. On the k-th period it is
 //! `G(x₀ + kT + s) = G(x₀ + s) + Σⱼ cⱼ(k) sʲ/j!` with j < m, where `c(1)` are the rises of G and its derivatives over the
 //! knots, and `c(a + b) = exp(bTD) c(a) + c(b)` (D takes every entry to the one before): k periods take some log₂ k steps.
 
-/// Where x is: the number of its period, and the place on the knots.
+/// The number of the period that contains x, and the corresponding place on the knots.
 pub(crate) fn wrapped(x: f64, first: f64, last: f64) -> (f64, f64) {
     let period = last - first;
     let distance = x - first;
     let within = distance.rem_euclid(period);
     let place = first + within;
-    // Not `min`, which would make a number of NaN.
+    // `min` would turn NaN into a number.
     (((distance - within) / period).round(), if place > last { last } else { place })
 }
 
@@ -26,7 +26,7 @@ pub(crate) fn accumulated(rises: &[f64], count: f64, period: f64) -> Vec<f64> {
         unit = shifted(&unit, step).iter().map(|c| -c).collect();
     }
     let mut total = vec![0.0; rises.len()];
-    // Integers beyond 2⁵³ are those of x whose place within a period is lost anyway.
+    // Above 2⁵³ periods the place within a period is lost to rounding anyway.
     let mut rest = count.abs() as u64;
     while rest > 0 {
         if rest % 2 == 1 {

@@ -1,23 +1,24 @@
 //! Real roots of polynomials on an interval, in Bernstein form on [0, 1] or in powers of τ on [0, ∞).
 //!
-//! Between neighbouring stationary points a polynomial is monotone, so that the signs at its ends say whether there is a
-//! root; stationary points are the roots of the derivative, found in the same way. A value that rounding cannot tell from
-//! zero counts as zero, and neighbouring zeros (a point that is touched, roots that rounding cannot separate) as one root.
+//! A polynomial is monotone between neighbouring stationary points, so the signs there decide whether there is a root
+//! between them; stationary points are the roots of the derivative, found in the same way. A value below the rounding error
+//! counts as zero, and consecutive zeros (a double root, or roots that rounding cannot separate) count as one root.
 
 use crate::bernstein;
 
-/// Units in the last place of the sum of the terms' sizes, per coefficient, that count as zero.
+/// Values up to this many ulp of the sum of the absolute terms, per coefficient, count as zero: the errors of de Casteljau's
+/// and of Horner's scheme are about one.
 const ULPS: f64 = 1.0;
 
 /// A polynomial in a form that shows its sign changes.
 pub(crate) trait Form: Sized {
     fn degree(&self) -> usize;
     fn value(&self, t: f64) -> f64;
-    /// What the value at t may be off by.
+    /// A bound of the rounding error of the value at t.
     fn noise(&self, t: f64) -> f64;
-    /// The derivative, to be taken at its word (without noise).
+    /// The derivative, with no noise: its roots only cut the interval.
     fn derivative(&self) -> Self;
-    /// Changes of sign in the coefficients: as many roots inside, or fewer by an even number.
+    /// Sign changes in the coefficients. The number of roots is this, or less by an even number.
     fn changes(&self) -> usize;
 }
 
@@ -26,7 +27,7 @@ fn sign_changes(c: &[f64]) -> usize {
     signs.clone().zip(signs.skip(1)).filter(|(a, b)| a != b).count()
 }
 
-/// Bernstein coefficients on [0, 1], and what every value may be off by.
+/// Bernstein coefficients on [0, 1], and a bound of the rounding error of every value.
 pub(crate) struct Bernstein {
     pub(crate) c: Vec<f64>,
     pub(crate) noise: f64,
@@ -40,12 +41,12 @@ impl Bernstein {
         Self { c: c.iter().map(|c| c - v).collect(), noise }
     }
 
-    /// Whether no value can be told from zero.
+    /// Whether all values are zero to rounding.
     pub(crate) fn is_zero(&self) -> bool {
         self.c.iter().all(|c| c.abs() <= self.noise)
     }
 
-    /// Whether all coefficients have one sign beyond doubt, so that there is no root.
+    /// Whether all coefficients have one sign in spite of rounding, so that there is no root.
     pub(crate) fn is_definite(&self) -> bool {
         self.c.iter().all(|c| *c > self.noise) || self.c.iter().all(|c| *c < -self.noise)
     }
@@ -69,7 +70,7 @@ impl Form for Bernstein {
     }
 }
 
-/// `Σ aₖ τᵏ` for τ ≥ 0, and the share of the terms' sizes that its values may be off by.
+/// `Σ aₖ τᵏ` for τ ≥ 0, and its rounding error relative to the sum of the absolute terms.
 pub(crate) struct Power {
     pub(crate) a: Vec<f64>,
     pub(crate) share: f64,
@@ -89,7 +90,7 @@ impl Power {
     }
 }
 
-/// `Σ aₖ τᵏ`; at an infinite τ the limit, for a sum of zero is not multiplied.
+/// `Σ aₖ τᵏ`. At an infinite τ this is the limit: a partial sum of zero is not multiplied by τ.
 pub(crate) fn horner(a: &[f64], tau: f64) -> f64 {
     a.iter().rev().fold(0.0, |sum, v| if sum == 0.0 { *v } else { sum * tau + v })
 }
@@ -105,7 +106,7 @@ impl Form for Power {
         if self.share == 0.0 {
             return 0.0;
         }
-        // The value at 0 is a coefficient itself: what counts is how far the others lead from it.
+        // The value at 0 is a coefficient, without error; only the other terms are rounded.
         self.share * t * self.a[1..].iter().rev().fold(0.0, |sum, v| sum * t + v.abs())
     }
     fn derivative(&self) -> Self {
@@ -134,8 +135,8 @@ pub(crate) fn outward_roots(mut a: Vec<f64>) -> Vec<f64> {
     }
 }
 
-/// The best of a root and its two neighbours among the floating-point numbers, if a value there cannot be told from zero, or
-/// values on both sides differ in sign. Where `f` is not to be asked it is NaN.
+/// Verify a root by evaluation: return whichever of `x` and its two neighbouring floating-point numbers has the smallest
+/// |f|, if that is at most `noise` or f changes sign among the three. `f` is NaN where it is not defined.
 pub(crate) fn verified(x: f64, noise: f64, f: impl Fn(f64) -> f64) -> Option<f64> {
     if !x.is_finite() {
         return None;
@@ -174,19 +175,18 @@ fn cuts<F: Form>(form: &F, end: f64) -> Vec<f64> {
     cuts
 }
 
-/// Roots of one polynomial after another, at places that increase: what cannot be told from zero on both sides of a place
-/// where two meet is one root.
+/// Collects the roots of the pieces of a function from left to right. Zeros on both sides of a knot are one root.
 #[derive(Debug, Default)]
 pub(crate) struct Merged {
     out: Vec<f64>,
-    /// The best of the zeros since the last value that is none.
+    /// Place and size of the smallest value in the current run of zeros.
     zero: Option<(f64, f64)>,
-    /// Whether those zeros continue a polynomial that is zero throughout, whose start has been reported.
+    /// Whether the run continues a piece that is zero throughout, whose start has been reported.
     reported: bool,
 }
 
 impl Merged {
-    /// The roots in [0, end] of a polynomial, each at its place `at(t)` if it has one.
+    /// Add the roots of a piece in [0, end], each at the place `at(t)` unless that is `None`.
     pub(crate) fn add<F: Form>(&mut self, form: &F, end: f64, at: impl Fn(f64) -> Option<f64>) {
         let mut before: Option<(f64, f64)> = None;
         for t in cuts(form, end) {
@@ -208,14 +208,14 @@ impl Merged {
         }
     }
 
-    /// A polynomial that is zero throughout, from this place on: the place, then NaN.
+    /// Add a piece that is zero throughout: its start, then NaN.
     pub(crate) fn add_zero(&mut self, place: f64) {
         self.zero = None;
         self.reported = true;
         self.out.extend([place, f64::NAN]);
     }
 
-    /// The zeros until now are one root.
+    /// End the current run of zeros, which is one root.
     pub(crate) fn close(&mut self) {
         if let Some((place, _)) = self.zero.take()
             && !self.reported
@@ -231,8 +231,8 @@ impl Merged {
     }
 }
 
-/// The root in a bracket with a change of sign: secants with the Illinois rule, and halves of the bracket in the order of
-/// floating-point numbers, which end however wide it is.
+/// The root in a bracket with a change of sign: secant steps with the Illinois rule. Every fourth step halves the number of
+/// floating-point numbers in the bracket instead, so that 256 steps are enough for any bracket.
 fn bracketed(form: &impl Form, t: [f64; 2], value: [f64; 2]) -> f64 {
     let ([mut lo, mut hi], [mut f_lo, mut f_hi]) = (t, value);
     let mut best = if f_lo.abs() < f_hi.abs() { (lo, f_lo.abs()) } else { (hi, f_hi.abs()) };

@@ -32,9 +32,9 @@ pub(crate) fn harmonic(a: f64, b: f64) -> f64 {
 
 /// The end slope. Where the two secants have one sign the paper's three-point formula
 /// `(1 + Δ₀/Δ₁)Δ₀ − (Δ₀/Δ₁)(y₂−y₀)/(x₂−x₀)`, written as `Δ₀ + (Δ₀/Δ₁)(Δ₀ − Δ₁)h₁/(h₀+h₁)`, which needs no
-/// cancellation. It is for monotone data: beside a turn or a flat (Δ₁ of the other sign or 0) the slope of the parabola
-/// through the three points, `Δ₀ + (Δ₀ − Δ₁)h₀/(h₀+h₁)`, as PCHIP has it (Moler, *Numerical Computing with MATLAB*, 3.6).
-/// Both limited to [0, 2Δ₀].
+/// cancellation. That formula is for monotone data. Beside a turn or a flat (Δ₁ of the other sign, or 0) use the slope of the
+/// parabola through the three points, `Δ₀ + (Δ₀ − Δ₁)h₀/(h₀+h₁)`, as PCHIP does (Moler, *Numerical Computing with MATLAB*,
+/// section 3.6). Both are limited to [0, 2Δ₀].
 pub(crate) fn end(h0: f64, h1: f64, delta0: f64, delta1: f64) -> f64 {
     let change = if sign(delta0) == sign(delta1) {
         (delta0 / delta1) * ((delta0 - delta1) * (h1 / (h0 + h1)))

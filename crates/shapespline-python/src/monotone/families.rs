@@ -44,8 +44,8 @@ impl<'py> Data<'py> {
         Ok(Self { x, y, layout })
     }
 
-    /// One column after another: the caller's own numbers where they lie so. Where there is none, one of zeros, so that
-    /// x and the options are looked at as ever.
+    /// The columns one after another: the caller's own numbers if they lie so. If there are none, one column of zeros, so
+    /// that x and the options are checked as usual.
     fn columns<'a>(&'a self, copy: &'a mut Vec<f64>) -> &'a [f64] {
         if self.layout.is_empty() {
             *copy = vec![0.0; self.x.values().len()];

@@ -32,7 +32,7 @@ use crate::{
 /// ('PiecewisePolynomial', 1.0)
 #[pyclass(module = "shapespline", frozen, subclass, weakref)]
 pub(crate) struct PiecewisePolynomial {
-    /// One a column, or one of zeros where there is no column.
+    /// One fit per column, or a single fit of zeros if there are no columns.
     pub(crate) fits: Arc<Fits>,
     pub(crate) layout: Arc<Layout>,
 }

@@ -46,7 +46,7 @@ impl Layout {
         self.outer.is_empty() && self.inner.is_empty()
     }
 
-    /// Whether there is no column, as of y of shape (n, 0).
+    /// Whether there are no columns, as in y of shape (n, 0).
     pub(crate) fn is_empty(&self) -> bool {
         self.outer.contains(&0) || self.inner.contains(&0)
     }
@@ -57,7 +57,7 @@ impl Layout {
         sizes.copied().try_fold(1, usize::checked_mul).unwrap_or(0)
     }
 
-    /// Whether so many fits are its columns: one of zeros where there is none.
+    /// Whether this many fits belong to it: one per column, or one of zeros if there are no columns.
     pub(crate) fn is_of(&self, fits: usize) -> bool {
         fits == if self.is_empty() { 1 } else { self.columns() }
     }

@@ -123,7 +123,7 @@ pub(crate) enum SlopesOption {
 }
 
 impl SlopesOption {
-    /// Given slopes in the shape of y, `columns` times those of one of `n` points where these are given for all.
+    /// Given slopes, column after column: one vector of `n` slopes is repeated for all `columns`.
     pub(crate) fn given(
         &self,
         y: &Array<'_>,
