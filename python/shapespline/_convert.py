@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from shapespline._core import MonotoneSpline, PiecewiseBezier, SpaceCurve
+from shapespline._core import MonotoneSpline, PiecewiseBezier, SpaceCurve, _floats
 from shapespline._errors import InputError
 
 if TYPE_CHECKING:
@@ -26,9 +26,7 @@ ACCEPTED = (
 
 def _coefficients(name: str, values: Any, *, leading: int) -> Floats:
     """Return coefficients as floats, with axes (…, dim); one component becomes a last axis of 1."""
-    array = np.asarray(values)
-    if array.dtype.kind not in "biuf":
-        raise TypeError(f"{name} must hold real numbers, got dtype {array.dtype}")
+    array = _floats(name, values)
     if array.ndim == leading:
         array = array[..., None]
     if array.ndim != leading + 1 or array.shape[-1] not in (1, 2, 3):
@@ -38,11 +36,11 @@ def _coefficients(name: str, values: Any, *, leading: int) -> Floats:
             name,
             value=np.shape(values),
         )
-    return array.astype(float, copy=False)
+    return array
 
 
 def _of_bspline(curve: Any) -> PiecewiseBezier:
-    knots = np.asarray(curve.t, dtype=float)
+    knots = _floats("curve.t", curve.t)
     degree = int(curve.k)
     count = len(knots) - degree - 1
     # SciPy looks at no more than these.
@@ -58,7 +56,7 @@ def _of_bspline(curve: Any) -> PiecewiseBezier:
 
 
 def _of_powers(curve: Any) -> PiecewiseBezier:
-    breaks = np.asarray(curve.x, dtype=float)
+    breaks = _floats("curve.x", curve.x)
     coefficients = _coefficients("curve.c", curve.c, leading=2)
     if coefficients.shape[2] == 1:
         if len(coefficients) < 2:
@@ -82,7 +80,7 @@ def _of_monotone(f: MonotoneSpline) -> PiecewiseBezier:
 
 
 def _of_bernstein(curve: Any) -> PiecewiseBezier:
-    breaks = np.asarray(curve.x, dtype=float)
+    breaks = _floats("curve.x", curve.x)
     control = _coefficients("curve.c", curve.c, leading=2).swapaxes(0, 1)
     if control.shape[2] == 1:
         if control.shape[1] < 2:

@@ -39,6 +39,7 @@ __all__ = [
     "_check_shape",
     "_curve_inflections",
     "_fit_many",
+    "_floats",
     "_from_bytes",
     "_polygon_inflections",
     "_polygon_shape",
@@ -385,6 +386,7 @@ class SearchStep:
     def __reduce__(self) -> tuple[object, tuple[bytes]]: ...
 
 def _from_bytes(data: bytes) -> Any: ...
+def _floats(argument: str, values: object) -> _Floats: ...
 def _fit_many(
     points: ArrayLike,
     offsets: ArrayLike,

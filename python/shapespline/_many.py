@@ -189,9 +189,8 @@ def fit_many(
 
     Notes
     -----
-    Other Python threads run meanwhile. An array of float64 may be read where it is, so they must
-    leave it as it is. Each curve is fitted as by its class: algorithm, guarantee and sources are
-    there. Cost O(n), and what the violations need.
+    Other Python threads run meanwhile. Each curve is fitted as by its class: algorithm, guarantee
+    and sources are there. Cost O(n), and what the violations need.
 
     Examples
     --------

@@ -123,6 +123,9 @@ def check_shape(
     >>> ss.check_shape(points, make_interp_spline(u, points, k=4), parameters=u).undecided
     []
     """
+    points = _core._floats("points", points)
+    if not (parameters is None or isinstance(parameters, (str, float, int))):
+        parameters = _core._floats("parameters", parameters)
     chosen: Any = parameters
     if isinstance(curve, SpaceCurve) and boundary is None and _is_own(points, curve, parameters):
         return curve.check(
@@ -131,6 +134,7 @@ def check_shape(
     if isinstance(curve, TensionSpline):
         _at_its_points(curve, parameters)
     if _is_array(curve):
+        curve = _core._floats("curve", curve)
         chosen = _breaks(points, curve, parameters)
         curve = _core.PiecewiseBezier(curve, chosen)
     return _core._check_shape(
@@ -145,10 +149,10 @@ def check_shape(
     )
 
 
-def _is_own(points: Any, curve: SpaceCurve, parameters: Any) -> bool:
+def _is_own(points: Floats, curve: SpaceCurve, parameters: Any) -> bool:
     """Whether these are the points that the curve was made for, at the same parameters."""
     own = curve.points
-    if np.shape(points) != own.shape or not np.array_equal(points, own):
+    if not np.array_equal(points, own):
         return False
     if parameters is None:
         return True
@@ -165,7 +169,7 @@ def _at_its_points(curve: TensionSpline, parameters: Any) -> None:
     strange = np.flatnonzero(~np.isin(parameters, curve.parameters))
     if strange.size:
         i = int(strange[0])
-        value = np.asarray(parameters)[i]
+        value = parameters[i]
         raise InputError(
             f"parameters[{i}] = {value} is not one of the parameters at which the TensionSpline "
             "has a point: it can be judged at these only",
@@ -175,7 +179,7 @@ def _at_its_points(curve: TensionSpline, parameters: Any) -> None:
         )
 
 
-def _breaks(points: ArrayLike, control: Any, parameters: Any) -> Floats:
+def _breaks(points: Floats, control: Floats, parameters: Any) -> Floats:
     """Return the breaks of Bézier control points: the parameters of the points."""
     if parameters is None:
         raise InputError(
@@ -183,7 +187,7 @@ def _breaks(points: ArrayLike, control: Any, parameters: Any) -> Floats:
             "each point",
             "parameters",
         )
-    shape = np.shape(control)
+    shape = control.shape
     if len(shape) != 3:
         text = f"curve must have shape (segments, degree + 1, dim), got shape {shape}"
         raise InputError(text, "curve", value=shape)
@@ -196,7 +200,7 @@ def _breaks(points: ArrayLike, control: Any, parameters: Any) -> Floats:
             "curve",
             value=shape[0],
         )
-    dim = np.shape(points)[1]
+    dim = points.shape[1]
     if shape[2] == dim + 1:
         raise InputError(
             f"points have {dim} coordinates, curve has {shape[2]}; for control points with weights "
@@ -361,15 +365,15 @@ def inflection_count(curve: Any, direction: ArrayLike | None = None) -> Inflecti
     2
     """
     if _is_array(curve):
-        axes = np.ndim(curve)
-        if axes == 2:
+        curve = _core._floats("curve", curve)
+        if curve.ndim == 2:
             return InflectionCount(*_core._polygon_inflections(curve, direction))
-        if axes != 3:
+        if curve.ndim != 3:
             raise InputError(
                 "curve must be points of shape (n, 2) or (n, 3), or Bézier control points of shape "
-                f"(pieces, degree + 1, dim); got shape {np.shape(curve)}",
+                f"(pieces, degree + 1, dim); got shape {curve.shape}",
                 "curve",
-                value=np.shape(curve),
+                value=curve.shape,
             )
         curve = _core.PiecewiseBezier(curve, np.arange(len(curve) + 1.0))
     return InflectionCount(*_core._curve_inflections(piecewise(curve), direction))

@@ -52,6 +52,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<diagnostics::Diagnostics>()?;
     module.add_class::<diagnostics::SearchStep>()?;
     module.add_function(wrap_pyfunction!(pickle::_from_bytes, module)?)?;
+    module.add_function(wrap_pyfunction!(input::_floats, module)?)?;
     module.add_function(wrap_pyfunction!(many::_fit_many, module)?)?;
     module.add_function(wrap_pyfunction!(shape::_check_shape, module)?)?;
     module.add_function(wrap_pyfunction!(shape::_curve_inflections, module)?)?;

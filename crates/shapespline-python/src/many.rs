@@ -20,14 +20,14 @@ use shapespline::{
 use crate::{
     error::{curve_error, fit_error, input_error},
     fit::{Made, Request, Searching},
-    input::{Offsets, PointArray},
+    input::{Offsets, Points},
     options::{self, CriteriaNames, Ends, Method, Parameters},
     work::{GoOn, PARALLEL, interruptible, interruptible_each},
 };
 
 /// What the curves are made from, and on how many threads.
-struct Rows<'py> {
-    points: PointArray<'py>,
+struct Rows {
+    points: Points,
     offsets: Offsets,
     parametrization: Parametrization,
     boundary: Boundary,
@@ -37,7 +37,7 @@ struct Rows<'py> {
 /// Fits all, and returns the curves (`None` where one failed) and the exceptions by index.
 fn run<'py>(
     py: Python<'py>,
-    rows: Rows<'py>,
+    rows: Rows,
     request: &Request,
     make: impl Fn(DataPolygon, GoOn<'_>) -> Result<Made, FitError> + Sync,
 ) -> PyResult<(Bound<'py, PyTuple>, Bound<'py, PyDict>)> {
@@ -50,8 +50,7 @@ fn run<'py>(
     let line = DataPolygon::new(vec![DVec3::ZERO, DVec3::X], named, Boundary::ZeroCurvature);
     make(line.map_err(input_error)?, &|| ControlFlow::Continue(())).map_err(fit_error)?;
 
-    let dimension = points.dimension;
-    let points = points.points(py);
+    let Points { points, dimension } = points;
     let points = Ragged::new(&points, &offsets.0).map_err(input_error)?;
     let collection = Collection { points, dimension, parametrization, boundary };
     collection.check().map_err(input_error)?;
@@ -95,7 +94,7 @@ fn run<'py>(
 #[allow(clippy::too_many_arguments)]
 pub(crate) fn _fit_many<'py>(
     py: Python<'py>,
-    points: PointArray<'py>,
+    points: Points,
     offsets: Offsets,
     #[pyo3(from_py_with = options::method)] method: Method,
     parameters: Parameters,

@@ -11,7 +11,7 @@ use shapespline::{
 
 use crate::{
     error::{input_error, invalid, must},
-    input::{Numbers, count, float, kind, numbers, text},
+    input::{Numbers, count, float, kind, numbers, reworded, text},
     tangents::Tangents,
 };
 
@@ -310,8 +310,9 @@ impl<'py> FromPyObject<'_, 'py> for CriteriaNames {
                 kind(given)
             ))
         };
+        let py = object.py();
         let mut criteria = Criteria::NONE;
-        for item in object.try_iter().map_err(|_| wrong(&object))? {
+        for item in object.try_iter().map_err(|error| reworded(py, error, |_| wrong(&object)))? {
             let item = item?;
             let name = text(&item).ok_or_else(|| wrong(&item))?;
             criteria = criteria.with(Self::one(&name)?);

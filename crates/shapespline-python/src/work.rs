@@ -157,48 +157,60 @@ fn watched<T: Send>(pool: &ThreadPool, work: impl FnOnce(GoOn<'_>) -> T + Send) 
 }
 
 /// Runs many short searches, none of which uses threads itself: on this thread, which begins at once and
-/// looks for Ctrl-C between two of them, and on those of the pool as they wake up.
+/// asks for signals whenever its search asks whether to go on, and on those of the pool as they wake up.
 pub(crate) fn interruptible_each<T: Send>(
     py: Python<'_>,
     count: usize,
     search: impl Fn(usize, GoOn<'_>) -> T + Sync,
 ) -> PyResult<Vec<T>> {
     let (stop, next) = (AtomicBool::new(false), AtomicUsize::new(0));
-    let take = |watch: &mut dyn FnMut()| {
+    let take = |ask: GoOn<'_>| {
         let mut done = Vec::new();
-        loop {
+        while ask().is_continue() {
             let k = next.fetch_add(1, Ordering::Relaxed);
             if k >= count {
-                return done;
+                break;
             }
-            done.push((k, search(k, &|| go_on(&stop))));
-            watch();
+            done.push((k, search(k, ask)));
         }
+        done
     };
-    let mut signals = Signals { asked: Instant::now(), interrupt: None };
+    let signals = Mutex::new(Signals { asked: Instant::now(), interrupt: None });
+    let ask_here = || {
+        let answer = signals.lock().unwrap_or_else(PoisonError::into_inner).ask();
+        if answer.is_break() {
+            stop.store(true, Ordering::Relaxed);
+        }
+        answer
+    };
     let all = py.detach(|| {
-        let mut here = || {
-            take(&mut || {
-                if signals.ask().is_break() {
-                    stop.store(true, Ordering::Relaxed);
-                }
-            })
-        };
-        let Some(pool) = pool() else { return here() };
+        let Some(pool) = pool() else { return take(&ask_here) };
         let others = Mutex::new(Vec::new());
+        let (sender, receiver) = mpsc::channel::<()>();
         let mut all = pool.threads.in_place_scope(|scope| {
             for _ in 1..pool.threads.current_num_threads().min(count) {
-                scope.spawn(|_| {
-                    let done = take(&mut || {});
+                let sender = sender.clone();
+                let (take, others, stop) = (&take, &others, &stop);
+                scope.spawn(move |_| {
+                    let done = take(&|| go_on(stop));
                     others.lock().unwrap_or_else(PoisonError::into_inner).extend(done);
+                    drop(sender);
                 });
             }
-            here()
+            drop(sender);
+            let done = take(&ask_here);
+            // The others may each have one long search left: signals are asked for until all are done.
+            while receiver.recv_timeout(PATIENCE) == Err(mpsc::RecvTimeoutError::Timeout) {
+                if ask_here().is_break() {
+                    break;
+                }
+            }
+            done
         });
         all.extend(others.into_inner().unwrap_or_else(PoisonError::into_inner));
         all
     });
-    if let Some(error) = signals.interrupt {
+    if let Some(error) = signals.into_inner().unwrap_or_else(PoisonError::into_inner).interrupt {
         return Err(error);
     }
     py.check_signals()?;

@@ -4,14 +4,14 @@ use pyo3::{
     IntoPyObjectExt,
     exceptions::{PyIndexError, PyOverflowError, PyTypeError},
     prelude::*,
-    types::{PyBool, PyList, PyTuple},
+    types::{PyList, PyTuple},
 };
 use shapespline::monotone::{Continuation, Extrapolation, Fairness, MonotoneError, Shape};
 
 use super::layout::Layout;
 use crate::{
     error::{Refused, invalid, joined, must, tuple},
-    input::{Array, Numbers, array, count, float, integer, kind, numbers, text},
+    input::{Array, Numbers, array, count, float, integer, kind, numbers, reworded, text},
     options::{choose, unknown},
 };
 
@@ -71,15 +71,15 @@ fn continuation(object: &Bound<'_, PyAny>) -> PyResult<Continuation> {
         };
     }
     // NumPy's own bool is none of Python's.
-    let truth = object.cast::<PyBool>().map(|value| value.is_true());
-    match truth.map_or_else(|_| object.extract::<bool>().ok(), Some) {
-        Some(true) => Ok(Continuation::Polynomial),
-        Some(false) => Ok(Continuation::Nan),
-        None => Err(PyTypeError::new_err(format!(
-            "extrapolate must be one of {CONTINUATIONS}, got {}",
-            kind(object)
-        ))),
-    }
+    let truth = object.extract::<bool>().map_err(|error| {
+        reworded(object.py(), error, |_| {
+            PyTypeError::new_err(format!(
+                "extrapolate must be one of {CONTINUATIONS}, got {}",
+                kind(object)
+            ))
+        })
+    })?;
+    Ok(if truth { Continuation::Polynomial } else { Continuation::Nan })
 }
 
 /// An extrapolation as Python gives it; those of derivatives and antiderivatives have names of their own.
@@ -161,7 +161,12 @@ pub(crate) fn slopes(object: &Bound<'_, PyAny>) -> PyResult<SlopesOption> {
 /// `shape`: α = β, or the two arrays.
 pub(crate) fn shape(object: &Bound<'_, PyAny>) -> PyResult<Shape> {
     // A pair: two numbers, or two arrays of one entry a segment.
-    if let Ok(length) = object.len() {
+    let length = match object.len() {
+        Ok(length) => Some(length),
+        Err(error) if error.is_instance_of::<PyTypeError>(object.py()) => None,
+        Err(error) => return Err(error),
+    };
+    if let Some(length) = length {
         if length != 2 {
             let text =
                 format!("shape must be a number or a pair (alpha, beta), got {length} entries");
@@ -218,6 +223,8 @@ pub(crate) fn row(object: &Bound<'_, PyAny>) -> PyResult<isize> {
         if error.is_instance_of::<PyOverflowError>(object.py()) {
             return PyIndexError::new_err("row out of range");
         }
-        PyTypeError::new_err(format!("row must be an integer, got {}", kind(object)))
+        reworded(object.py(), error, |_| {
+            PyTypeError::new_err(format!("row must be an integer, got {}", kind(object)))
+        })
     })
 }
