@@ -52,6 +52,9 @@ METHODS: dict[type, str] = {
 
 # Curves
 
+#: What a check is asked, and a shape-preserving fit before it.
+_OPTIONS = ("criteria", "coplanarity", "collinearity", "tolerance")
+
 
 @dataclass(frozen=True)
 class CurveFile:
@@ -63,6 +66,8 @@ class CurveFile:
     boundary: Any
     #: What the curve is to keep: the shape of points in space or in the plane, or monotonicity.
     shape: str
+    #: What its fit was asked for, by the names of the options of a check; none of any other curve.
+    fit_options: dict[str, Any] | None
 
 
 def _integer(digits: str) -> int | float:
@@ -169,6 +174,23 @@ def _boundary(document: _Document) -> Any:
         document.fail(f"'boundary': {error}", "boundary")
 
 
+def _fit_options(document: _Document) -> dict[str, Any] | None:
+    """Return what the fit of the curve was asked for, if it was a fit."""
+    key = "fit_options"
+    given = document.entries.get(key)
+    if given is None:
+        return None
+    if not isinstance(given, dict) or not set(given) <= set(_OPTIONS):
+        document.fail(f"'{key}' must be an object with entries {', '.join(_OPTIONS)}", key)
+    for name, option in given.items():
+        if name == "criteria":
+            if not isinstance(option, list) or not all(isinstance(c, str) for c in option):
+                document.fail(f"'criteria' of '{key}' must be a list of names", key)
+        elif document.numbers(option, key).ndim:
+            document.fail(f"'{name}' of '{key}' must be a number", key)
+    return given
+
+
 def read_curve(path: Path) -> CurveFile:
     """Read a curve from JSON: Bézier pieces, a B-spline or a piecewise polynomial in powers."""
     document = _Document(path)
@@ -198,7 +220,7 @@ def read_curve(path: Path) -> CurveFile:
     shape = document.entries.get("shape", "polygon")
     if shape not in ("polygon", "monotone"):
         document.fail(f"'shape' must be 'polygon' or 'monotone', got {_shown(shape)}", "shape")
-    return CurveFile(path, curve, parameters, _boundary(document), shape)
+    return CurveFile(path, curve, parameters, _boundary(document), shape, _fit_options(document))
 
 
 def write_curve(path: Path, curve: Any) -> None:
@@ -218,6 +240,8 @@ def write_curve(path: Path, curve: Any) -> None:
             else ends
         )
         entries["tension"] = curve.tension.tolist()
+        if (options := curve._fit_options()) is not None:
+            entries["fit_options"] = options
     elif isinstance(curve, MonotoneSpline):
         entries["method"] = METHODS[type(curve)]
         entries["shape"] = "monotone"

@@ -146,6 +146,7 @@ def check_shape(
         coplanarity,
         collinearity,
         tolerance,
+        False,
     )
 
 

@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import shapespline
-from shapespline import _fit
+from shapespline import _core, _fit
 from shapespline._files import read_curve
 from shapespline._io import (
     STREAM,
@@ -81,13 +81,15 @@ def _add_fit(commands: argparse._SubParsersAction[Parser]) -> None:
     parser.set_defaults(run=_fit.run)
 
 
+#: The options of a check, in the order of `_core._check_shape`.
+CHECKED = ("criteria", "coplanarity", "collinearity", "tolerance")
+
+
 def _located(
     data: Points, curve: CurveFile, options: argparse.Namespace, error: shapespline.InputError
 ) -> Exception:
     """Return the error as one about the points, about the curve, or about an option."""
-    if error.argument in ("criteria", "coplanarity", "collinearity", "tolerance") or (
-        error.argument == "boundary" and options.boundary
-    ):
+    if error.argument in (*CHECKED, "boundary") and getattr(options, error.argument) is not None:
         return UsageError(str(error))
     # What the curve's own file says comes first.
     own = ["points", *(["parameters"] if curve.parameters is None and data.parameters is not None
@@ -105,21 +107,23 @@ def _check(options: argparse.Namespace) -> int:
     monotone = options.monotone or curve.shape == "monotone"
     data = (read_function if monotone else read_points)(options.points, options.columns)
     parameters = data.parameters if curve.parameters is None else curve.parameters
+    own = curve.fit_options or {}
+    given = {name: getattr(options, name) for name in CHECKED}
+    asked = {name: own.get(name) if option is None else option for name, option in given.items()}
     report: Any
     try:
         with progress(f"checking {len(data.points):,} points"):
             if monotone:
-                report = check_monotone(data.points, curve.curve, tolerance=options.tolerance)
+                tolerance = 1e-9 if asked["tolerance"] is None else asked["tolerance"]
+                report = check_monotone(data.points, curve.curve, tolerance=tolerance)
             else:
-                report = shapespline.check_shape(
+                report = _core._check_shape(
                     data.points,
                     curve.curve,
-                    parameters=parameters,
-                    boundary=options.boundary or curve.boundary,
-                    criteria=options.criteria,
-                    coplanarity=options.coplanarity,
-                    collinearity=options.collinearity,
-                    tolerance=options.tolerance,
+                    parameters,
+                    options.boundary or curve.boundary,
+                    *asked.values(),
+                    curve.fit_options is not None,
                 )
     except shapespline.InputError as error:
         raise _located(data, curve, options, error) from None
@@ -162,7 +166,8 @@ def _add_check(commands: argparse._SubParsersAction[Parser]) -> None:
         "--criteria",
         type=names,
         metavar="NAME,…",
-        help=f"any of {known} (default: all but the last two)",
+        help=f"any of {known} (default: those of the fit that made CURVE.json, else all but the "
+        "last two)",
     )
     parser.add_argument(
         "--boundary",
@@ -175,7 +180,7 @@ def _add_check(commands: argparse._SubParsersAction[Parser]) -> None:
         ("tolerance", 1e-9, "what counts as zero, and as passing through a point"),
     ):
         parser.add_argument(
-            f"--{name}", type=real, default=default, help=f"{what} (default: %(default)s)"
+            f"--{name}", type=real, help=f"{what} (default: that of the fit, else {default})"
         )
     parser.add_argument(
         "--report", type=Path, metavar="OUT.json", help="write the whole report to this file"

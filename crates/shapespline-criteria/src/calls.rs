@@ -67,8 +67,10 @@ impl Calls {
     pub const TURNING_AFTER: Self = Self::AFTER_ALIKE.and(Self::AFTER_APART);
     /// No criterion that is asked implies that the curve is regular.
     pub const REGULAR: Self = Self(1 << 17);
+    /// With it: an end leg that is rounding beside its chord counts as none. Tension may leave so little.
+    pub(crate) const LEGS: Self = Self(1 << 18);
     /// The polygon doubles back on itself at a node of the segment. Asks for nothing.
-    const DOUBLING_BACK: Self = Self(1 << 18);
+    const DOUBLING_BACK: Self = Self(1 << 19);
 
     /// Whether any call of `other` is among these.
     #[inline]
@@ -111,7 +113,7 @@ impl Calls {
             Criterion::Coplanarity => Self::COPLANARITY.and(Self::SPLIT_COPLANARITY),
             Criterion::Collinearity => Self::LINE_AT_START.and(Self::LINE_AT_END),
             Criterion::GlobalConvexity => Self::GLOBAL_CONVEXITY,
-            Criterion::Regular => Self::REGULAR,
+            Criterion::Regular => Self::REGULAR.and(Self::LEGS),
         }
     }
 
@@ -222,11 +224,15 @@ impl Calls {
             }
         }
         // Last: whether a plane is asked for depends on a turn, asked for or not.
-        let excuse = if wanted.any(Self::REGULAR) { 0 } else { Self::DOUBLING_BACK.0 };
+        let (regular, excuse) = if wanted.any(Self::REGULAR) {
+            (Self::of(Criterion::Regular), 0)
+        } else {
+            (Self::REGULAR, Self::DOUBLING_BACK.0)
+        };
         for calls in &mut calls[inside.clone()] {
             let asked = calls.0 & wanted.0;
             let spared = (asked & Self::IMPLY_REGULAR.0) | (calls.0 & excuse);
-            calls.0 = asked | if spared != 0 { 0 } else { Self::REGULAR.0 };
+            calls.0 = asked | if spared != 0 { 0 } else { regular.0 };
         }
         calls[..inside.start].fill(Self::default());
         calls[inside.end..].fill(Self::default());

@@ -97,7 +97,7 @@ impl<'a> Checker<'a> {
             Criterion::Coplanarity => margin::coplanarity(&s, calls, &self.cones(segment)),
             Criterion::Collinearity => margin::collinearity(&s, calls, &self.cones(segment)),
             Criterion::GlobalConvexity => margin::global_convexity(&s),
-            Criterion::Regular => regular::margin(&s),
+            Criterion::Regular => regular::margin(&s, calls),
         };
         record.satisfied = !self.faults(segment, legs).any(Faults::of(criterion));
         record.margin = margin.value;

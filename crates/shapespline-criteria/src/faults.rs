@@ -247,7 +247,7 @@ pub(crate) fn sign_faults(s: &Situation, calls: Calls) -> Faults {
         faults.add(Faults::TURNING_AT_END, !end);
     }
     if calls.any(Calls::REGULAR) {
-        faults.add(Faults::NOT_REGULAR, !is_regular(s));
+        faults.add(Faults::NOT_REGULAR, !is_regular(s, calls));
     }
     if calls.any(Calls::CONVEXITY.and(Calls::INFLECTION)) {
         let ([a0, g0, b0], [a1, g1, b1]) = (s.omega_along(s.p), s.omega_along(s.q));

@@ -7,7 +7,8 @@
 //!
 //! stays clear of zero. Rounding moves the numerator by a few units in the last place of the denominator: a
 //! curve whose `ρ` falls below that stops as far as anyone can tell, and is not regular. The short legs of
-//! high tension do no harm, for at an end `ρ` is one.
+//! high tension do no harm, for at an end `ρ` is one; but an end leg that is rounding beside its chord cannot
+//! be told from none, and is lost where the curve is written as points.
 //!
 //! Legs that lie in an open half space cannot cancel: that proves most segments at once, and by subdivision
 //! all the others, since on short intervals the legs of a hodograph that does not vanish are alike.
@@ -15,11 +16,16 @@
 use glam::DVec3;
 use shapespline_geometry::polynomial::{Polynomial, split};
 
-use crate::{faults::Situation, margin::Margin};
+use crate::{Calls, faults::Situation, margin::Margin};
 
-/// Legs that cancel to this part of their sizes are zero to rounding: the middle leg of a cubic is a
-/// difference of three vectors, and each of up to 52 subdivisions adds an error of half a unit.
-const ROUNDING: f64 = 64.0 * f64::EPSILON;
+/// Legs that cancel to this part of their sizes are zero to rounding. Arithmetic alone adds some 64 units in
+/// the last place; the points bring those of their positions, often a thousand chords away from zero:
+/// through points that double back on a line which no coordinate axis follows, `ρ` falls to some 1e−14.
+const ROUNDING: f64 = 4096.0 * f64::EPSILON;
+
+/// An end leg of this part of its chord is none: tangents that are to vanish by symmetry come out of the
+/// solvers at some 1e−17 of the velocities.
+const NO_LEG: f64 = 4.0 * f64::EPSILON;
 
 /// Legs are in a half space if they lean to its side by at least this part of their sizes.
 const CLEAR: f64 = 2.0 * ROUNDING;
@@ -36,17 +42,21 @@ pub(crate) fn leads_along([a, c]: [DVec3; 2], chord: DVec3) -> bool {
     let clear =
         |along: f64, size: f64| (along > 0.0) & (along * along > CLEAR * CLEAR * size * chord);
     // (‖a‖ + ‖L‖ + ‖c‖)² ≤ 3 (‖a‖² + ‖L‖² + ‖c‖²).
-    clear(first, a) & clear(last, c) & clear(chord - first - last, 3.0 * (a + chord + c))
+    let least = 2.0 * NO_LEG * chord;
+    (first.min(last) > least)
+        & clear(first, a)
+        & clear(last, c)
+        & clear(chord - first - last, 3.0 * (a + chord + c))
 }
 
 /// Whether a cubic segment is regular.
-pub(crate) fn is_regular(s: &Situation) -> bool {
-    leads_along([s.a, s.c], s.chord) || Hodograph::cubic(s).stops_at().is_none()
+pub(crate) fn is_regular(s: &Situation, calls: Calls) -> bool {
+    leads_along([s.a, s.c], s.chord) || Hodograph::cubic(s, calls).stops_at().is_none()
 }
 
 /// The least `ρ` of a cubic segment; zero where the verdict is that it stops.
-pub(crate) fn margin(s: &Situation) -> Margin {
-    let hodograph = Hodograph::cubic(s);
+pub(crate) fn margin(s: &Situation, calls: Calls) -> Margin {
+    let hodograph = Hodograph::cubic(s, calls);
     match hodograph.stops_at() {
         Some(at) => Margin { value: 0.0, at },
         None => hodograph.least(),
@@ -60,10 +70,12 @@ pub(crate) struct Hodograph {
 }
 
 impl Hodograph {
-    fn cubic(s: &Situation) -> Self {
+    fn cubic(s: &Situation, calls: Calls) -> Self {
         let (a, chord, c) = (s.a.length(), s.chord.length(), s.c.length());
         let [first, middle, last] = s.tangent_quadratic();
-        Self { legs: vec![first, middle, last], sizes: vec![a, a + chord + c, c] }
+        let least = if calls.any(Calls::LEGS) { chord * (NO_LEG / ROUNDING) } else { 0.0 };
+        let end = |leg: f64| leg.max(least);
+        Self { legs: vec![first, middle, last], sizes: vec![end(a), a + chord + c, end(c)] }
     }
 
     /// From positive multiples of the tangent, with the bound on their error.

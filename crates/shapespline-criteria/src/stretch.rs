@@ -104,10 +104,11 @@ impl<'a> StretchChecker<'a> {
             return;
         }
         let stops = |j: usize| !leads_along([first.get(j), last.get(j)], chords.get(j));
+        let regular = Calls::of(Criterion::Regular).bits();
         let doubted = |&j: &usize| match doubts[j] {
             0 => false,
             // Beside straight runs, and at natural ends, nothing else is left open.
-            open => open != Calls::REGULAR.bits() || stops(j),
+            open => open & !regular != 0 || stops(j),
         };
         for j in places.filter(doubted) {
             let faults = self.faults_at(stretch, calls[j], [first.get(j), last.get(j)], j);

@@ -29,6 +29,11 @@ impl Asked {
         Self { criteria, strict: false, tolerances }
     }
 
+    /// The defaults of a check: of a fit, or of any other curve.
+    pub(crate) fn default_of(fit: bool) -> Self {
+        Self { strict: !fit, ..Self::default() }
+    }
+
     /// The same but for what is given.
     pub(crate) fn with(self, given: Given) -> PyResult<Self> {
         let Given { criteria, coplanarity, collinearity, tolerance } = given;

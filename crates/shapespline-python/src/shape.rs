@@ -42,9 +42,10 @@ pub(crate) fn _check_shape(
     #[pyo3(from_py_with = options::optional_coplanarity)] coplanarity: Option<f64>,
     #[pyo3(from_py_with = options::optional_collinearity)] collinearity: Option<f64>,
     #[pyo3(from_py_with = options::optional_tolerance)] tolerance: Option<f64>,
+    of_fit: bool,
 ) -> PyResult<ShapeReport> {
     let asked = Given { criteria, coplanarity, collinearity, tolerance };
-    let asked = Asked::default().with(asked)?;
+    let asked = Asked::default_of(of_fit).with(asked)?;
     let curve = Arc::clone(&curve.get().curve);
     let Points { points, dimension } = points;
     if dimension != curve.dimension() {

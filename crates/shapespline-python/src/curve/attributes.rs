@@ -1,8 +1,11 @@
 //! What a curve was made of, and how: attributes, and the check of its shape.
 
 use numpy::PyArray1;
-use pyo3::prelude::*;
-use shapespline::geometry::{Boundary, Dimension};
+use pyo3::{prelude::*, types::PyDict};
+use shapespline::{
+    criteria::Criterion,
+    geometry::{Boundary, Dimension},
+};
 
 use super::SpaceCurve;
 use crate::{
@@ -135,6 +138,19 @@ impl SpaceCurve {
     #[getter]
     fn history(&self) -> Option<Vec<SearchStep>> {
         self.search.as_ref().map(|search| search.history.iter().map(SearchStep::from).collect())
+    }
+
+    /// What the fit was asked for, by the names of `check`; `None` of a curve of given tension. For files.
+    fn _fit_options<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyDict>>> {
+        let Some(search) = &self.search else { return Ok(None) };
+        let Asked { criteria, tolerances, .. } = search.asked;
+        let names: Vec<_> = criteria.iter().map(Criterion::name).collect();
+        let options = PyDict::new(py);
+        options.set_item("criteria", names)?;
+        options.set_item("coplanarity", tolerances.coplanarity)?;
+        options.set_item("collinearity", tolerances.collinearity)?;
+        options.set_item("tolerance", tolerances.zero)?;
+        Ok(Some(options))
     }
 
     /// Discrete torsion of the data on each segment, in reciprocal units of the points, shape
