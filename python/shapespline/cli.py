@@ -81,7 +81,7 @@ def _add_fit(commands: argparse._SubParsersAction[Parser]) -> None:
     parser.set_defaults(run=_fit.run)
 
 
-#: The options of a check, in the order of `_core._check_shape`.
+#: The options of a check.
 CHECKED = ("criteria", "coplanarity", "collinearity", "tolerance")
 
 
@@ -122,7 +122,10 @@ def _check(options: argparse.Namespace) -> int:
                     curve.curve,
                     parameters,
                     options.boundary or curve.boundary,
-                    *asked.values(),
+                    asked["criteria"],
+                    asked["coplanarity"],
+                    asked["collinearity"],
+                    asked["tolerance"],
                     curve.fit_options is not None,
                 )
     except shapespline.InputError as error:
