@@ -52,7 +52,7 @@ pub(crate) fn of_signs(
         .and(between | calls.any(Calls::TURNING_AT_END), last.dot(q), xq)
         .and(between, last.dot(p), xp)
         .and(calls.any(Calls::TURNING_AFTER), last.dot(after), x.dot(after));
-    [on_p, on_q].map(|least| least.numerator / least.denominator)
+    [on_p.numerator / on_p.denominator, on_q.numerator / on_q.denominator]
 }
 
 /// What collinearity asks for, given the unit chord; `cotangent` is that of the half angle of its cone.

@@ -136,18 +136,20 @@ impl StretchHandles {
         let Self { stretch, calls, first, last, at_start, at_end, .. } = self;
         let (chords, binormals) = (stretch.chords(), stretch.binormals());
         let legs = |j: usize| [first.get(j), last.get(j)];
+        // Written out: `map` on arrays keeps the loop from working on several at once.
+        let around = |j: usize| {
+            [binormals.get(j), binormals.get(j + 1), binormals.get(j + 2), binormals.get(j + 3)]
+        };
         let safety = options.safety;
         if stretch.is_ordinary() {
             for j in 0..stretch.less(4) {
-                let around = [0, 1, 2, 3].map(|k| binormals.get(j + k));
-                let bounds = of_signs(calls[j + 2], legs(j + 2), chords.get(j + 2), around);
+                let bounds = of_signs(calls[j + 2], legs(j + 2), chords.get(j + 2), around(j));
                 [at_start[j + 2], at_end[j + 2]] = limits(bounds, safety);
             }
         } else {
             for j in 0..stretch.less(4) {
-                let around = [0, 1, 2, 3].map(|k| binormals.get(j + k));
                 let (legs, chord) = near_one(legs(j + 2), chords.get(j + 2));
-                let bounds = of_signs(calls[j + 2], legs, chord, around);
+                let bounds = of_signs(calls[j + 2], legs, chord, around(j));
                 [at_start[j + 2], at_end[j + 2]] = limits(bounds, safety);
             }
         }
@@ -218,7 +220,8 @@ fn smaller(a: f64, b: f64) -> f64 {
 /// The factors that bounds allow.
 #[inline(always)]
 fn limits(bounds: [f64; 2], safety: f64) -> [f64; 2] {
-    bounds.map(|bound| if safety * bound < 1.0 { safety * bound } else { 1.0 })
+    let limit = |bound: f64| if safety * bound < 1.0 { safety * bound } else { 1.0 };
+    [limit(bounds[0]), limit(bounds[1])]
 }
 
 /// The places at the end of which the first and the last node of an open polygon lie.

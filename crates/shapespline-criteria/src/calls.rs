@@ -296,7 +296,7 @@ fn of_signs(gamma: f64, cosine: f64, sines: [f64; 2], zero: f64) -> u32 {
     const ALONG: Calls = Calls::CONVEXITY.and(Calls::GLOBAL_CONVEXITY).and(Calls::TURNS_ALIKE);
     const AGAINST: Calls = Calls::INFLECTION.and(Calls::TURNS_APART);
     let call = |holds: bool, call: Calls| if holds { call.0 } else { 0 };
-    let [start, end] = sines.map(|sine| sine > zero);
+    let (start, end) = (sines[0] > zero, sines[1] > zero);
     let small = zero * (sines[0] * sines[1]);
     call(gamma > zero, Calls::RIGHT_TORSION)
         | call(gamma < -zero, Calls::LEFT_TORSION)

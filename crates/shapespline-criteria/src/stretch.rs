@@ -94,7 +94,13 @@ impl<'a> StretchChecker<'a> {
             let end = places.end.min(stretch.less(Stretch::BESIDE));
             for j in places.start - Stretch::BESIDE..end - Stretch::BESIDE {
                 let legs = [first.get(j + 3), last.get(j + 3)];
-                let around = [1, 2, 3, 4].map(|k| binormals.get(j + k));
+                // Written out: `map` on arrays keeps the loop from working on several at once.
+                let around = [
+                    binormals.get(j + 1),
+                    binormals.get(j + 2),
+                    binormals.get(j + 3),
+                    binormals.get(j + 4),
+                ];
                 let s = Situation::of_scaled(legs, chords.get(j + 3), around);
                 doubts[j + 3] = doubtful(&s, calls[j + 3].bits());
                 any |= doubts[j + 3];
