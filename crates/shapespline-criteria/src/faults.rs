@@ -132,7 +132,8 @@ impl Situation {
     /// `ω·n` as `[α, γ, β]` of Lemma 5.1.
     #[inline(always)]
     pub(crate) fn omega_along(&self, n: DVec3) -> [f64; 3] {
-        self.omega.map(|w| w.dot(n))
+        let [first, middle, last] = self.omega;
+        [first.dot(n), middle.dot(n), last.dot(n)]
     }
 
     /// `det[a, b, c]`: with b = L − a − c it is `det[a, L, c]`.

@@ -136,7 +136,8 @@ impl<'a> StretchChecker<'a> {
             return Faults::default();
         }
         let (chords, binormals) = (stretch.chords(), stretch.binormals());
-        let around = [j - 2, j - 1, j, j + 1].map(|j| binormals.get(j));
+        let around =
+            [binormals.get(j - 2), binormals.get(j - 1), binormals.get(j), binormals.get(j + 1)];
         let s = Situation::new(legs, chords.get(j), around);
         faults(&s, calls, || {
             let around = [j - 1, j, j + 1].map(|j| stretch.directions().get(j));
