@@ -118,7 +118,8 @@ def applicable(
     Coplanarity is asked only of data that are not planar as a whole (5.34)–(5.37), and only where
     a plane is known: both turns must exceed the square root of the tolerance (next to a straight
     node any Γ̂ is small), and the segment's own two binormals must leave room for it: when they
-    differ by more than ε₁/2, no curve that follows both can satisfy it.
+    differ by more than ε₁/2, no curve that follows both can satisfy it. Torsion, too, is asked only
+    where both turns exceed the square root of the tolerance.
     """
     sizes = norm(polygon.binormals)
     known = np.sqrt(tolerance)
@@ -130,7 +131,7 @@ def applicable(
         "convexity": polygon.turning > 0,
         "inflection": polygon.turning < 0,
         "turning": (sizes[:-1] > 0) | (sizes[1:] > 0),
-        "torsion": polygon.torsion != 0,
+        "torsion": (polygon.torsion != 0) & bent,
         "coplanarity": solid & (polygon.torsion == 0) & bent & agree & (polygon.turning != 0),
         "collinearity": polygon.straight[:-1] | polygon.straight[1:],
     }

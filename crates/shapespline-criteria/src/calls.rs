@@ -298,8 +298,11 @@ fn of_signs(gamma: f64, cosine: f64, sines: [f64; 2], zero: f64) -> u32 {
     let call = |holds: bool, call: Calls| if holds { call.0 } else { 0 };
     let (start, end) = (sines[0] > zero, sines[1] > zero);
     let small = zero * (sines[0] * sines[1]);
-    call(gamma > zero, Calls::RIGHT_TORSION)
-        | call(gamma < -zero, Calls::LEFT_TORSION)
+    // As with planes: the torsion of a turn that is nearly straight is below the accuracy of the data.
+    let clear = zero.sqrt();
+    let twists = (sines[0] > clear) & (sines[1] > clear);
+    call(twists & (gamma > zero), Calls::RIGHT_TORSION)
+        | call(twists & (gamma < -zero), Calls::LEFT_TORSION)
         | call(start & end & (cosine > small), ALONG)
         | call(start & end & (cosine < -small), AGAINST)
         | call(start, Calls::TURNING_AT_START)
@@ -432,5 +435,23 @@ mod tests {
         }
         assert!(!planar(70, |k| if k == 69 { 1e-6 } else { 0.0 }));
         assert!(!planar(3 * BLOCK, |k| if k == 3 * BLOCK { 1e-6 } else { 0.0 }));
+    }
+
+    /// As with planes: below the square root of the tolerance a turn has no osculating plane to speak of.
+    #[test]
+    fn torsion_is_asked_only_where_both_ends_turn_clearly() {
+        let asked = |sine: f64| {
+            let points = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [2.0, sine, 0.0], [3.0, 0.5, 1.0]];
+            let points = points.map(DVec3::from).to_vec();
+            let ends = Boundary::ZeroCurvature;
+            let polygon = DataPolygon::new(points, &Parametrization::Chordal, ends).unwrap();
+            Calls::of_polygon(&polygon, &Tolerances::default())[1]
+        };
+        let torsion = Calls::of(Criterion::Torsion);
+        // The tolerance is 1e−9; these determinants are all above it.
+        for (sine, expected) in [(1e-3, true), (1e-4, true), (1e-5, false), (1e-7, false)] {
+            assert_eq!(asked(sine).any(torsion), expected, "{sine}");
+            assert!(asked(sine).any(Calls::CONVEXITY.and(Calls::INFLECTION)), "{sine}");
+        }
     }
 }

@@ -7,7 +7,7 @@
 //! | convexity | `P_m·P_{m+1} > 0` | `ω(u)·P_n > 0` on the segment, `n = m, m+1` |
 //! | inflection | `P_m·P_{m+1} < 0` | `ω·P_m` goes from + to −, `ω·P_{m+1}` from − to +, once |
 //! | turning | `P_m ≠ 0` (at a node) | `(ω(u_m)·P_j)(P_m·P_j) > 0`, `j = m−1, m, m+1`, and `γ'` lies between the chords |
-//! | torsion | `Γ_m ≠ 0` | `τ(u) Γ_m > 0` on the segment |
+//! | torsion | `Γ_m ≠ 0`, both turns above the root of the tolerance | `τ(u) Γ_m > 0` on the segment |
 //! | coplanarity | `Γ_m = 0`, `P_m, P_{m+1} ≠ 0` in a polygon that is not planar | the binormal stays within `asin ε₁` of `±P` |
 //! | collinearity | `P_m = 0`, `L_{m−1}·L_m > 0` | the tangent stays within `asin ε₀` of the line around the node |
 //! | global convexity (when asked) | `P_m·P_{m+1} > 0` | convexity, and `((γ−γ(0))×γ')·P_n > 0`, `(γ'(0)×(γ−γ(0)))·P_n > 0` |

@@ -12,6 +12,7 @@
 //! | [`nu`] | ν-splines: G², one linear system |
 //! | [`tension`] | C² tension cubics: C² in a parameter of their own, one linear system |
 //! | [`catmull_rom`] | Catmull–Rom: C¹ or G¹, local, shape-preserving in closed form |
+//! | [`fair`] | fair curves: C² cubics with extra knots, the least energy that keeps the shape |
 //!
 //! ```
 //! use shapespline::prelude::*;
@@ -42,6 +43,7 @@
 pub use shapespline_banded as banded;
 pub use shapespline_catmull_rom as catmull_rom;
 pub use shapespline_criteria as criteria;
+pub use shapespline_fair as fair;
 pub use shapespline_geometry as geometry;
 pub use shapespline_monotone as monotone;
 pub use shapespline_nu as nu;
@@ -52,6 +54,7 @@ pub use shapespline_tension as tension;
 pub mod prelude {
     pub use shapespline_catmull_rom::{CatmullRom, Continuity, HandleOptions};
     pub use shapespline_criteria::{Checker, Criteria, Criterion, ShapeReport, Tolerances};
+    pub use shapespline_fair::{Energy, FairOptions, FairSpline};
     pub use shapespline_geometry::{
         ArcLength, Boundary, Curve, DVec3, DataPolygon, Dimension, Parametrization, PiecewiseCubic,
         Ragged, Side,

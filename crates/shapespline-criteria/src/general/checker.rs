@@ -6,8 +6,7 @@ use shapespline_geometry::{DataPolygon, InputError, PiecewiseBezier, length, pol
 
 use super::{Question, Segment, corner::joined, decide, measure};
 use crate::{
-    Calls, Checker, Criteria, Criterion, Notes, Record, ShapeReport, Tolerances, Undecided,
-    notes::notes,
+    Checker, Criteria, Criterion, Notes, Record, ShapeReport, Tolerances, Undecided, notes::notes,
 };
 
 /// How far from the points a curve may pass by default, over the extent of the points.
@@ -155,7 +154,7 @@ impl<'a> CurveChecker<'a> {
             margin: f64::NAN,
             location: f64::NAN,
         };
-        let Some(question) = self.question(segment, criterion) else { return record };
+        let Some(question) = self.checker.question(segment, criterion) else { return record };
         let pieces = self.segment(segment);
         let sign = self.verdict(segment, &pieces, &question);
         let measured = measure(&pieces, &question);
@@ -178,7 +177,7 @@ impl<'a> CurveChecker<'a> {
         if self.legs(segment).is_some() {
             return None;
         }
-        let question = self.question(segment, criterion)?;
+        let question = self.checker.question(segment, criterion)?;
         match self.verdict(segment, &self.segment(segment), &question) {
             Sign::Undecided { from, to } => {
                 let interval = [self.parameter(segment, from), self.parameter(segment, to)];
@@ -202,7 +201,7 @@ impl<'a> CurveChecker<'a> {
         }
         let pieces = self.segment(i);
         for criterion in calls.criteria().iter() {
-            let Some(question) = self.question(i, criterion) else { continue };
+            let Some(question) = self.checker.question(i, criterion) else { continue };
             match self.verdict(i, &pieces, &question) {
                 Sign::Positive => {}
                 Sign::Fails { .. } => found.records.push(self.record(i, criterion)),
@@ -226,17 +225,6 @@ impl<'a> CurveChecker<'a> {
             .into_iter()
             .filter(|&end| corner(end))
             .fold(sign, |sign, end| sign.and(Sign::Fails { at: end as f64 }))
-    }
-
-    fn question(&self, segment: usize, criterion: Criterion) -> Option<Question> {
-        let calls = self.checker.calls()[segment];
-        let polygon = self.checker.polygon();
-        let normals = [segment, segment + 1].map(|i| polygon.binormal(i).normalize_or_zero());
-        let beside = polygon.binormals_beside(segment).map(DVec3::normalize_or_zero);
-        let cones = self.checker.cones(segment);
-        let chord = polygon.direction(segment);
-        let question = Question { criterion, calls, normals, beside, chord, cones };
-        calls.any(Calls::of(criterion)).then_some(question)
     }
 
     fn parameter(&self, segment: usize, local: f64) -> f64 {

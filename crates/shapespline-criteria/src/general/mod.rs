@@ -13,6 +13,7 @@ mod checker;
 mod corner;
 mod decide;
 mod measure;
+mod pieces;
 mod segment;
 mod swing;
 mod turning;

@@ -3,6 +3,10 @@
 use glam::{DVec3, DVec4};
 use shapespline_geometry::{BezierPart, polynomial::Polynomial};
 
+/// Parts of a segment shorter than this are rounding: where a part ends at a break, `to` and the break
+/// differ by it, and differences of control points of what lies between are zero.
+const SLIVER: f64 = 1e-12;
+
 /// A piece of the curve between two data points: `A/w` on `[0, 1]`, where `[0, 1]` is the part
 /// `local` of the data segment.
 #[derive(Debug, Clone)]
@@ -73,7 +77,7 @@ impl Segment {
         let cut = |piece: &Piece| {
             let [start, end] = piece.local;
             let (lo, hi) = (from.max(start), to.min(end));
-            (hi > lo)
+            (hi - lo > SLIVER)
                 .then(|| piece.part((lo - start) / (end - start), (hi - start) / (end - start)))
         };
         Self { pieces: self.pieces.iter().filter_map(cut).collect() }
@@ -207,5 +211,21 @@ mod tests {
                 assert!((difference - exact).length() < 1e-5 * (1.0 + exact.length()), "{i}");
             }
         }
+    }
+
+    /// Found on a hiking track: a part that ended 1e−15 after a break left a piece without extent, whose
+    /// tangent is zero and fails every criterion.
+    #[test]
+    fn a_part_that_ends_at_a_break_has_no_sliver_beyond_it() {
+        let part = |from: f64, local: [f64; 2]| {
+            let at = |k: u32| DVec3::new(from + 0.25 * f64::from(k), 0.1, 0.0).extend(1.0);
+            BezierPart { control: (0..4).map(at).collect(), local }
+        };
+        let segment = Segment::new(&[part(0.0, [0.0, 0.25]), part(0.75, [0.25, 1.0])], false, 0.0);
+        for to in [0.25, 0.25 + 8e-16, 0.25 - 8e-16] {
+            assert_eq!(segment.part(0.0, to).pieces.len(), 1, "{to}");
+            assert_eq!(segment.part(to, 1.0).pieces.len(), 1, "{to}");
+        }
+        assert_eq!(segment.part(0.0, 0.26).pieces.len(), 2);
     }
 }

@@ -1,0 +1,196 @@
+//! The ladder on the whole curve: windows, widened where they must be, and the exact check.
+
+use shapespline_banded::SolveError;
+use shapespline_criteria::Criterion;
+use shapespline_geometry::DVec3;
+
+use crate::{
+    Energy, FairOptions, Method,
+    chain::Chain,
+    control::Control,
+    cubic::plain_cubic,
+    element::Node,
+    export::Pieces,
+    rows::Rules,
+    segment::Demands,
+    solve::{LAST, finish, finish_bending, finish_parametric, restart_all, solve},
+    window::{BESIDE, Window, windows},
+};
+
+/// What the ladder came to.
+pub(crate) struct Found {
+    pub(crate) nodes: Vec<Node>,
+    pub(crate) plain: Vec<Node>,
+    /// Whether a segment was solved for; the others are those of the plain cubic.
+    pub(crate) solved: Vec<bool>,
+    pub(crate) method: Method,
+    /// The criteria that hold a segment back, with the segment.
+    pub(crate) active: Vec<(Criterion, usize)>,
+    /// Segments of which the exact check does not prove everything.
+    pub(crate) open: Vec<usize>,
+}
+
+/// The share of a cone's angle that the search stays within.
+const CONE: f64 = 0.95;
+
+/// Climbs the ladder as far as the data need.
+pub(crate) fn climb(
+    demands: &Demands<'_>,
+    options: &FairOptions,
+    control: &mut Control<'_>,
+) -> Result<Found, SolveError> {
+    let plain = plain_cubic(demands)?;
+    let mut found = Found {
+        nodes: plain.clone(),
+        solved: vec![false; demands.checker.polygon().segments()],
+        plain,
+        method: Method::Cubic,
+        active: Vec::new(),
+        open: Vec::new(),
+    };
+    let cone = |epsilon: f64| (CONE * epsilon).asin().tan();
+    let tolerances = options.tolerances;
+    let rules = Rules {
+        cones: [cone(tolerances.coplanarity), cone(tolerances.collinearity)],
+        exact_middles: false,
+    };
+    match options.energy {
+        Energy::Parametric => found.open_windows(demands, rules, control),
+        Energy::Bending => found.bend(demands, rules, control),
+    }
+    Ok(found)
+}
+
+impl Found {
+    /// The segments in which the plain cubic fails.
+    fn failing(&self, demands: &Demands<'_>) -> Vec<usize> {
+        let checker = demands.checker;
+        let legs = |i: usize| self.pieces(demands, i).legs[0];
+        checker.all_faults(legs).into_iter().map(|(i, _)| i).collect()
+    }
+
+    /// The pieces of a segment.
+    pub(crate) fn pieces(&self, demands: &Demands<'_>, i: usize) -> Pieces {
+        let (span, ends) = (demands.span(i), [i, (i + 1) % self.nodes.len()]);
+        let [start, end] = ends.map(|j| self.nodes[j]);
+        let legs = span.legs(start, end);
+        if self.solved[i] {
+            Pieces::of(&span, &legs, demands.units, ends_of(demands, i))
+        } else {
+            Pieces::plain(&span, &legs, demands.units)
+        }
+    }
+
+    /// Solves windows around the failing segments; those in which that fails, wider ones.
+    fn open_windows(&mut self, demands: &Demands<'_>, rules: Rules, control: &mut Control<'_>) {
+        let polygon = demands.checker.polygon();
+        let mut failing = self.failing(demands);
+        self.open.clone_from(&failing);
+        let count = self.nodes.len();
+        for beside in [BESIDE, 4 * BESIDE, count] {
+            let mut unsolved = Vec::new();
+            for window in windows(&failing, count, polygon.is_closed(), beside) {
+                let whole = window.count == count;
+                let mut chain = window.chain(demands, &self.plain, rules);
+                let plain = chain.nodes.clone();
+                let own = || failing.iter().copied().filter(|&k| window.touches(k, count));
+                let Some(method) = solve(demands, &mut chain, whole, control) else {
+                    unsolved.extend(own());
+                    continue;
+                };
+                finish_parametric(demands, &mut chain, &plain, control);
+                let open = certify(demands, &mut chain, control);
+                if !open.is_empty() && !whole {
+                    unsolved.extend(own());
+                    continue;
+                }
+                self.put(&chain, method);
+                self.open.retain(|&k| !window.touches(k, count));
+                self.open.extend(open);
+            }
+            failing = unsolved;
+            if failing.is_empty() || control.is_over() {
+                break;
+            }
+        }
+        self.open.sort_unstable();
+        self.open.dedup();
+    }
+
+    /// Minimises the bending energy of the whole curve.
+    fn bend(&mut self, demands: &Demands<'_>, rules: Rules, control: &mut Control<'_>) {
+        let whole = Window { start: 0, count: self.nodes.len() };
+        let mut chain = whole.chain(demands, &self.plain, rules);
+        let mut method = Method::Elastic;
+        chain.relax_speeds();
+        if !chain.all_hold() {
+            method = solve(demands, &mut chain, true, control).unwrap_or(method);
+        }
+        finish_bending(&mut chain, control);
+        self.open = certify(demands, &mut chain, control);
+        self.put(&chain, method);
+    }
+
+    /// Takes over what a chain has found.
+    fn put(&mut self, chain: &Chain, method: Method) {
+        let count = self.nodes.len();
+        for (j, node) in chain.nodes.iter().enumerate() {
+            self.nodes[(chain.first + j) % count] = *node;
+        }
+        for k in 0..chain.segments.len() {
+            let i = index(chain, k, self.solved.len());
+            self.solved[i] = true;
+            self.active.retain(|&(_, segment)| segment != i);
+            self.active.extend(chain.binding(k).into_iter().map(|criterion| (criterion, i)));
+        }
+        self.method = self.method.max(method);
+    }
+}
+
+/// Index along the curve of a segment of a chain.
+fn index(chain: &Chain, k: usize, segments: usize) -> usize {
+    (chain.first + k) % segments
+}
+
+/// The end points of a segment.
+fn ends_of(demands: &Demands<'_>, i: usize) -> [DVec3; 2] {
+    let points = demands.checker.polygon().points();
+    [points[i], points[i + 1]]
+}
+
+/// The exact check of what a chain will export. Where it does not prove everything, the barrier is
+/// raised, which widens the margins; at last the closed-form start is taken. Returns what stays open.
+fn certify(demands: &Demands<'_>, chain: &mut Chain, control: &mut Control<'_>) -> Vec<usize> {
+    let mut open = unproved(demands, chain);
+    for weight in [10.0, 100.0, 1000.0].map(|factor| factor * LAST) {
+        if open.is_empty() || control.is_over() || !chain.all_hold() {
+            return open;
+        }
+        finish(chain, weight, control);
+        open = unproved(demands, chain);
+    }
+    if !open.is_empty() {
+        let nodes = chain.nodes.clone();
+        restart_all(demands, chain);
+        let again = unproved(demands, chain);
+        if again.len() < open.len() {
+            return again;
+        }
+        chain.nodes = nodes;
+        chain.choose_changes();
+    }
+    open
+}
+
+/// The segments of a chain of which the exact check does not prove everything.
+fn unproved(demands: &Demands<'_>, chain: &Chain) -> Vec<usize> {
+    let segments = demands.checker.polygon().segments();
+    let open = |&k: &usize| {
+        let (i, span) = (index(chain, k, segments), &chain.segments[k].span);
+        let ends = ends_of(demands, i);
+        let pieces = Pieces::of(span, &chain.legs(k), demands.units, ends);
+        !demands.checker.unproved(i, &pieces.parts(ends)).is_empty()
+    };
+    let open = (0..chain.segments.len()).filter(open);
+    open.map(|k| index(chain, k, segments)).collect()
+}

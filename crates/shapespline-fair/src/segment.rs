@@ -1,0 +1,180 @@
+//! What the data ask of each segment: chords, normals, signs, in units of mean chord and mean speed one.
+
+use glam::DVec3;
+use shapespline_criteria::{Calls, Checker, separation};
+use shapespline_geometry::{DataPolygon, Dimension, length, normalize};
+
+use crate::{element::Span, energy::Energy};
+
+/// Turns above 163° (`‖l + l'‖` at most this) have no forward direction.
+const SHARPEST: f64 = 0.3;
+
+/// Least speed forward that is asked for first.
+pub(crate) const FORWARD: f64 = 0.1;
+
+/// What binormal vectors of a segment ask of `ω`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Bend {
+    /// Nothing.
+    Free,
+    /// No change of sign along either normal.
+    Convex,
+    /// One change along each, from + to − (the second normal is reversed).
+    Inflecting,
+}
+
+/// A segment and what is asked of it.
+#[derive(Debug, Clone)]
+pub(crate) struct Segment {
+    pub(crate) span: Span,
+    pub(crate) bend: Bend,
+    /// Unit normals along which `ω` is to be positive (at the start, where it inflects).
+    pub(crate) normals: [DVec3; 2],
+    /// Whether both normals are the same, as in the plane.
+    pub(crate) planar: bool,
+    /// Sines of the turning angles at the two nodes.
+    pub(crate) sines: [f64; 2],
+    /// Whether the turn at each node is asked for.
+    pub(crate) turns: [bool; 2],
+    /// Sign of the turn asked for at each node along the binormal of the other, where neither convexity
+    /// nor inflection asks for it; or 0.
+    pub(crate) pair: f64,
+    /// Unit binormals at the two nodes, not reversed.
+    pub(crate) binormals: [DVec3; 2],
+    /// `det` of the unit chords around.
+    pub(crate) gamma: f64,
+    /// Sign of torsion asked for, or 0.
+    pub(crate) torsion: f64,
+    /// Unit bisectors of the chords at the two nodes, zero where the polygon turns back.
+    pub(crate) bisectors: [DVec3; 2],
+    /// Parts of the segment on which `ω` stays near the normals.
+    pub(crate) plane: Option<[f64; 2]>,
+    /// Whether the tangent stays near the chord in the first and in the second half.
+    pub(crate) line: [bool; 2],
+    /// Least speed forward, over that of the chord.
+    pub(crate) speed: f64,
+    /// What is minimised.
+    pub(crate) energy: Energy,
+    /// Weight in the barrier: `sin²θ/length` of the largest turn nearby.
+    pub(crate) weight: f64,
+}
+
+/// Units of a polygon: points are divided by the mean chord, parameters by the mean spacing.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Units {
+    pub(crate) length: f64,
+    pub(crate) time: f64,
+}
+
+impl Units {
+    pub(crate) fn of(polygon: &DataPolygon) -> Self {
+        let n = polygon.segments();
+        let mean = |values: &dyn Fn(usize) -> f64| {
+            let largest = (0..n).map(values).fold(0.0, f64::max);
+            largest * ((0..n).map(|i| values(i) / largest).sum::<f64>() / n as f64)
+        };
+        Self { length: mean(&|i| length(polygon.chord(i))), time: mean(&|i| polygon.spacing(i)) }
+    }
+}
+
+/// What the segments of a polygon are asked, one by one.
+#[derive(Debug)]
+pub(crate) struct Demands<'a> {
+    pub(crate) checker: &'a Checker<'a>,
+    pub(crate) units: Units,
+}
+
+impl Demands<'_> {
+    pub(crate) fn span(&self, i: usize) -> Span {
+        let polygon = self.checker.polygon();
+        Span {
+            direction: polygon.direction(i),
+            length: length(polygon.chord(i)) / self.units.length,
+            spacing: polygon.spacing(i) / self.units.time,
+        }
+    }
+
+    /// Largest sine of a turn at the nodes of segment `i`.
+    fn sine(&self, i: usize) -> f64 {
+        let [p, q] = self.checker.polygon().binormals(i);
+        p.length().max(q.length())
+    }
+
+    /// Whether a segment is convex, inflects, or neither.
+    pub(crate) fn bend(&self, i: usize) -> Bend {
+        let calls = self.checker.calls()[i];
+        if calls.any(Calls::CONVEXITY) {
+            Bend::Convex
+        } else if calls.any(Calls::INFLECTION) {
+            Bend::Inflecting
+        } else {
+            Bend::Free
+        }
+    }
+
+    /// Sign of the torsion asked for, or 0.
+    pub(crate) fn torsion(&self, i: usize) -> f64 {
+        let calls = self.checker.calls()[i];
+        f64::from(u8::from(calls.any(Calls::RIGHT_TORSION)))
+            - f64::from(u8::from(calls.any(Calls::LEFT_TORSION)))
+    }
+
+    /// `det` of the unit chords around a segment.
+    pub(crate) fn gamma(&self, i: usize) -> f64 {
+        self.checker.polygon().gamma(i)
+    }
+
+    /// Whether coplanarity is asked for.
+    pub(crate) fn is_coplanar(&self, i: usize) -> bool {
+        self.checker.calls()[i].any(Calls::COPLANARITY.and(Calls::SPLIT_COPLANARITY))
+    }
+
+    pub(crate) fn segment(&self, i: usize) -> Segment {
+        let polygon = self.checker.polygon();
+        let calls = self.checker.calls()[i];
+        let n = polygon.segments();
+        let [p, q] = polygon.binormals(i);
+        let [before, own, after] = polygon.directions_around(i);
+        let bisector = |a: DVec3, b: DVec3| {
+            let sum = a + b;
+            if sum.length() > SHARPEST { sum.normalize() } else { DVec3::ZERO }
+        };
+        let bend = self.bend(i);
+        let end = if bend == Bend::Inflecting { -normalize(q) } else { normalize(q) };
+        let neighbours = if polygon.is_closed() {
+            [(i + n - 1) % n, (i + 1) % n]
+        } else {
+            [i.saturating_sub(1), (i + 1).min(n - 1)]
+        };
+        let sine = neighbours.into_iter().fold(self.sine(i), |m, k| m.max(self.sine(k)));
+        let span = self.span(i);
+        let split = calls.any(Calls::SPLIT_COPLANARITY);
+        Segment {
+            span,
+            bend,
+            normals: [normalize(p), end],
+            binormals: [normalize(p), normalize(q)],
+            planar: polygon.dimension() == Dimension::Two,
+            sines: [p.length(), q.length()],
+            turns: [Calls::TURNING_AT_START, Calls::TURNING_AT_END].map(|at| calls.any(at)),
+            pair: if bend == Bend::Free && calls.any(Calls::TURNING_PAIR) {
+                p.dot(q).signum()
+            } else {
+                0.0
+            },
+            gamma: p.dot(after),
+            torsion: self.torsion(i),
+            bisectors: [bisector(before, own), bisector(own, after)],
+            plane: if split {
+                let at = separation(polygon, i);
+                Some([0.5 * at, 0.5 * (1.0 + at)])
+            } else {
+                calls.any(Calls::COPLANARITY).then_some([1.0, 1.0])
+            },
+            line: [calls.any(Calls::LINE_AT_START), calls.any(Calls::LINE_AT_END)],
+            speed: FORWARD,
+            energy: Energy::Parametric,
+            weight: (sine * sine).max(1e-12) / span.length,
+        }
+    }
+}

@@ -1,0 +1,177 @@
+//! The ladder on one chain: from the plain cubic to the optimum.
+
+use crate::{
+    Energy, Method, Phase,
+    barrier::Barrier,
+    chain::Chain,
+    control::Control,
+    element::Node,
+    energy,
+    mend::{mend, refresh, set_start},
+    newton::Limits,
+    segment::Demands,
+    start::Scales,
+};
+
+/// The elastic phase: weights of the barrier, and the penalty.
+const ELASTIC: [f64; 3] = [0.1, 0.01, 1e-3];
+const PENALTY: f64 = 10.0;
+
+/// The last weight of the barrier: the energy is then within some 1 % of its infimum, and margins are
+/// ten times larger than at 1e−4.
+pub(crate) const LAST: f64 = 1e-3;
+
+/// Searches for segments that nearly stop.
+const ROUNDS: usize = 4;
+
+/// Bending energy times length above which a segment does: half a turn evenly spread has π².
+const SLOW: f64 = 20.0;
+
+/// Finds a feasible chain, and brings its parametric energy down. The method that it took, or nothing
+/// where it takes a wider chain; the whole curve always has an answer.
+pub(crate) fn solve(
+    demands: &Demands<'_>,
+    chain: &mut Chain,
+    whole: bool,
+    control: &mut Control<'_>,
+) -> Option<Method> {
+    let mut method = Method::Elastic;
+    control.begin(Phase::Elastic, chain.failing().len());
+    for weight in ELASTIC {
+        chain.choose_changes();
+        let barrier = Barrier { weight, penalty: Some(PENALTY), protects: false };
+        let limits = Limits { decrement: 0.01 * weight, steps: 60, until_all_hold: false };
+        chain.minimise(&barrier, limits, control);
+    }
+    chain.relax_speeds();
+    if !chain.all_hold() {
+        method = Method::Windows;
+        control.begin(Phase::Restart, chain.failing().len());
+        mend(demands, chain, control);
+        chain.relax_speeds();
+    }
+    control.begin(Phase::Improve, chain.failing().len());
+    if !chain.all_hold() {
+        if !whole {
+            return None;
+        }
+        method = Method::Sweeps;
+        replace(demands, chain);
+        improve(chain, 1.0, control);
+        improve(chain, 0.1, control);
+    }
+    improve(chain, 0.01, control);
+    Some(method)
+}
+
+/// Brings the parametric energy of a feasible chain down to the end. `plain` are the nodes of the plain
+/// cubic.
+pub(crate) fn finish_parametric(
+    demands: &Demands<'_>,
+    chain: &mut Chain,
+    plain: &[Node],
+    control: &mut Control<'_>,
+) {
+    // Where the curve nearly stops, ∫|Q''|²du does not see how it bends.
+    for _ in 0..ROUNDS {
+        let slow: Vec<usize> = (0..chain.segments.len())
+            .filter(|&k| chain.segments[k].energy == Energy::Parametric)
+            .filter(|&k| is_slow(chain, plain, k))
+            .collect();
+        if slow.is_empty() || control.is_over() {
+            break;
+        }
+        for &k in &slow {
+            chain.bend(k.saturating_sub(1)..(k + 2).min(chain.segments.len()));
+        }
+        control.begin(Phase::Restart, slow.len());
+        refresh(demands, chain, &slow, control);
+        control.begin(Phase::Improve, 0);
+        improve(chain, 0.1, control);
+        improve(chain, 0.01, control);
+    }
+    finish(chain, LAST, control);
+}
+
+/// Brings the bending energy of a feasible chain down to the end.
+pub(crate) fn finish_bending(chain: &mut Chain, control: &mut Control<'_>) {
+    chain.bend(0..chain.segments.len());
+    control.begin(Phase::Improve, 0);
+    for weight in [1.0, 0.1, 0.01] {
+        improve(chain, weight, control);
+    }
+    finish(chain, LAST, control);
+}
+
+/// The minimum at the last weight, as accurately as rounding allows.
+pub(crate) fn finish(chain: &mut Chain, weight: f64, control: &mut Control<'_>) {
+    chain.set_exact_middles(true);
+    let barrier = Barrier { weight, penalty: None, protects: false };
+    for (decrement, steps) in [(1e-3 * weight, 100), (1e-15, 8)] {
+        chain.minimise(&barrier, Limits { decrement, steps, until_all_hold: false }, control);
+    }
+}
+
+/// Newton's steps with the barrier proper.
+fn improve(chain: &mut Chain, weight: f64, control: &mut Control<'_>) {
+    chain.set_exact_middles(false);
+    let barrier = Barrier { weight, penalty: None, protects: false };
+    let limits = Limits { decrement: 0.03 * weight, steps: 100, until_all_hold: false };
+    chain.minimise(&barrier, limits, control);
+}
+
+/// Puts as many nodes of a chain where the closed-form start has them as it takes for all conditions to
+/// hold.
+fn replace(demands: &Demands<'_>, chain: &mut Chain) {
+    let before = chain.nodes.clone();
+    restart_all(demands, chain);
+    let closed = std::mem::replace(&mut chain.nodes, before);
+    chain.choose_changes();
+    loop {
+        let failing = chain.failing();
+        let nodes: Vec<usize> = failing.iter().flat_map(|&k| chain.ends(k)).collect();
+        let mut changed = false;
+        for j in nodes {
+            changed |= chain.nodes[j] != closed[j];
+            chain.nodes[j] = closed[j];
+        }
+        if !changed {
+            break;
+        }
+        chain.choose_changes();
+    }
+    chain.relax_speeds();
+}
+
+/// Puts all nodes of a chain where the closed-form start has them, with handles as long as hold.
+pub(crate) fn restart_all(demands: &Demands<'_>, chain: &mut Chain) {
+    let natural = Scales { tilt: 1.0, handle: 1.0, curvature: 0.3 };
+    let mut scales = vec![natural; chain.nodes.len()];
+    chain.ask_no_speed();
+    // A handle of 1e−13 of its natural length is the last that is tried.
+    for _ in 0..60 {
+        for (j, &scales) in scales.iter().enumerate() {
+            set_start(demands, chain, j, scales);
+        }
+        chain.choose_changes();
+        let mut shrink: Vec<usize> = chain.failing().iter().flat_map(|&k| chain.ends(k)).collect();
+        if shrink.is_empty() {
+            break;
+        }
+        shrink.sort_unstable();
+        shrink.dedup();
+        for j in shrink {
+            scales[j].handle *= 0.6;
+            scales[j].curvature *= 0.8;
+        }
+    }
+}
+
+/// Whether a segment nearly stops, and bends more for it than the plain cubic.
+fn is_slow(chain: &Chain, plain: &[Node], k: usize) -> bool {
+    let span = chain.segments[k].span;
+    let own = energy::bending(&span, &chain.legs(k));
+    let [start, end] = chain.ends(k);
+    own * span.length > SLOW
+        && own > 1.05 * energy::bending(&span, &span.legs(plain[start], plain[end]))
+}

@@ -1,0 +1,237 @@
+//! The curve.
+
+use std::ops::ControlFlow;
+
+use shapespline_criteria::{
+    Checker, Criteria, Criterion, CurveChecker, INTERPOLATION, ShapeReport, Tolerances,
+};
+use shapespline_geometry::{
+    Boundary, DVec3, DataPolygon, Dimension, InputError, Parametrization, PiecewiseBezier,
+    PiecewiseCubic, Side, fairness,
+};
+
+use crate::{
+    Diagnostics, Energy, FairOptions, Fit, FitError, Status, Step,
+    control::Control,
+    energy,
+    export::assemble,
+    ladder::{Found, climb},
+    segment::{Demands, Units},
+};
+
+/// A C² cubic through points in the plane or in space, with at most two extra knots per segment.
+/// Immutable.
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "Stored"))]
+pub struct FairSpline {
+    /// The curve over all knots.
+    curve: PiecewiseCubic,
+    /// The knots that are data points, ascending.
+    nodes: Vec<usize>,
+    boundary: Boundary,
+    energy: Energy,
+}
+
+/// What was stored, by whomever: checked as far as anything could go wrong later.
+#[cfg(feature = "serde")]
+#[derive(serde::Deserialize)]
+#[serde(rename = "FairSpline")]
+struct Stored {
+    curve: PiecewiseCubic,
+    nodes: Vec<usize>,
+    boundary: Boundary,
+    energy: Energy,
+}
+
+#[cfg(feature = "serde")]
+impl TryFrom<Stored> for FairSpline {
+    type Error = InputError;
+
+    fn try_from(stored: Stored) -> Result<Self, InputError> {
+        let Stored { curve, nodes, boundary, energy } = stored;
+        let bad = |index: usize, value: usize| InputError::OutOfRange {
+            argument: "nodes",
+            index,
+            value: value as f64,
+            allowed: "indices of knots, from the first to the last, each one to three after the one before",
+        };
+        let last = curve.knots().len() - 1;
+        match (nodes.first(), nodes.last()) {
+            (Some(0), Some(&end)) if end == last && nodes.len() > 1 => {}
+            _ => return Err(bad(0, nodes.first().copied().unwrap_or(0))),
+        }
+        let step = |pair: &[usize]| pair[1] <= pair[0] || pair[1] - pair[0] > 3;
+        if let Some(i) = nodes.windows(2).position(step) {
+            return Err(bad(i + 1, nodes[i + 1]));
+        }
+        Ok(Self { curve, nodes, boundary, energy })
+    }
+}
+
+impl FairSpline {
+    /// The fair curve through the points of a polygon.
+    ///
+    /// The fit says how it ended: the curve keeps the criteria if its status is `Solved`. Cost: one
+    /// solve and check of the plain cubic, O(N), and then what the failing segments need; with the
+    /// bending energy some tens of Newton steps, O(N) each.
+    ///
+    /// # Errors
+    /// Options outside their range; tangents that overflow.
+    pub fn fit(polygon: DataPolygon, options: &FairOptions) -> Result<Fit, FitError> {
+        Self::fit_with(polygon, options, &mut |_| ControlFlow::Continue(()))
+    }
+
+    /// As [`FairSpline::fit`], with a monitor that sees every Newton step and can end the search.
+    ///
+    /// # Errors
+    /// As [`FairSpline::fit`].
+    pub fn fit_with(
+        polygon: DataPolygon,
+        options: &FairOptions,
+        monitor: &mut dyn FnMut(&Step) -> ControlFlow<()>,
+    ) -> Result<Fit, FitError> {
+        options.validate()?;
+        let checker = Checker::new(&polygon, options.criteria, options.tolerances);
+        let demands = Demands { checker: &checker, units: Units::of(&polygon) };
+        let mut control = Control::new(options.max_iterations, monitor);
+        let found = climb(&demands, options, &mut control)?;
+        let pieces = (0..polygon.segments()).map(|i| found.pieces(&demands, i));
+        let (curve, nodes) = assemble(&polygon, pieces)?;
+        let boundary = polygon.boundary();
+        let curve = Self { curve, nodes, boundary, energy: options.energy };
+        let report = curve.check(options.criteria, options.tolerances)?;
+        let status = match (control.is_interrupted(), report.ok() && report.undecided.is_empty()) {
+            (true, _) => Status::Interrupted,
+            (_, true) => Status::Solved,
+            (_, false) => Status::IterationLimit,
+        };
+        let [energy, energy_cubic] =
+            [&found.nodes, &found.plain].map(|nodes| energy_of(&demands, nodes, options.energy));
+        let diagnostics = Diagnostics {
+            status,
+            method: found.method,
+            iterations: control.iterations,
+            solves: control.solves,
+            energy,
+            energy_cubic,
+            max_curvature: fairness(&PiecewiseBezier::from(&curve.curve)).max_curvature,
+            extra_knots: curve.curve.knots().len() - curve.nodes.len(),
+            active: active(&found),
+            tangent_scale: [1.0; 2],
+        };
+        Ok(Fit { curve, diagnostics, history: control.history, report })
+    }
+
+    /// The curve over all its knots: evaluation, arc length, frames, Bézier form.
+    #[must_use]
+    pub fn curve(&self) -> &PiecewiseCubic {
+        &self.curve
+    }
+
+    /// The indices of those knots that are data points.
+    #[must_use]
+    pub fn nodes(&self) -> &[usize] {
+        &self.nodes
+    }
+
+    /// The end conditions.
+    #[must_use]
+    pub fn boundary(&self) -> Boundary {
+        self.boundary
+    }
+
+    /// What was minimised.
+    #[must_use]
+    pub fn energy(&self) -> Energy {
+        self.energy
+    }
+
+    /// Planar or spatial.
+    #[must_use]
+    pub fn dimension(&self) -> Dimension {
+        self.curve.dimension()
+    }
+
+    /// The data points.
+    #[must_use]
+    pub fn points(&self) -> Vec<DVec3> {
+        self.nodes.iter().map(|&k| self.curve.points()[k]).collect()
+    }
+
+    /// Their parameters.
+    #[must_use]
+    pub fn parameters(&self) -> Vec<f64> {
+        self.nodes.iter().map(|&k| self.curve.knots()[k]).collect()
+    }
+
+    /// The first derivatives at the data points.
+    #[must_use]
+    pub fn tangents(&self) -> Vec<DVec3> {
+        let last = self.curve.knots().len() - 1;
+        let side = |k: usize| if k == last { Side::Left } else { Side::Right };
+        self.nodes.iter().map(|&k| self.curve.evaluate(self.curve.knots()[k], 1, side(k))).collect()
+    }
+
+    /// The data polygon.
+    ///
+    /// # Errors
+    /// None for a curve made by this crate.
+    pub fn polygon(&self) -> Result<DataPolygon, InputError> {
+        DataPolygon::with_dimension(
+            self.points(),
+            self.dimension(),
+            &Parametrization::Given(self.parameters()),
+            self.boundary,
+        )
+    }
+
+    /// Checks the curve against its own data: every criterion on every piece, exactly. Cost O(N).
+    ///
+    /// # Errors
+    /// Tolerances outside their range.
+    pub fn check(
+        &self,
+        criteria: Criteria,
+        tolerances: Tolerances,
+    ) -> Result<ShapeReport, InputError> {
+        let polygon = self.polygon()?;
+        let curve = PiecewiseBezier::from(&self.curve);
+        let tolerances = tolerances.validate()?;
+        match CurveChecker::new(&polygon, &curve, criteria, tolerances, INTERPOLATION) {
+            Ok(checker) => Ok(checker.report()),
+            // The curve is made of the points that it is checked against.
+            Err(_) => Ok(Checker::new(&polygon, criteria, tolerances).report(|_| [DVec3::NAN; 2])),
+        }
+    }
+}
+
+/// The energy of a curve, in the user's units.
+fn energy_of(demands: &Demands<'_>, nodes: &[crate::element::Node], energy: Energy) -> f64 {
+    let segments = demands.checker.polygon().segments();
+    let value = |i: usize| {
+        let span = demands.span(i);
+        let legs = span.legs(nodes[i], nodes[(i + 1) % nodes.len()]);
+        match energy {
+            Energy::Parametric => energy::parametric(&span, &legs),
+            Energy::Bending => energy::bending(&span, &legs),
+        }
+    };
+    let sum: f64 = (0..segments).map(value).sum();
+    let Units { length, time } = demands.units;
+    match energy {
+        Energy::Parametric => sum * (length / time) * (length / time) / time,
+        Energy::Bending => sum / length,
+    }
+}
+
+/// The criteria that hold the curve back, each with its segments.
+fn active(found: &Found) -> Vec<(Criterion, Vec<usize>)> {
+    let of = |criterion: Criterion| {
+        let own = found.active.iter().filter(|active| active.0 == criterion);
+        let mut segments: Vec<usize> = own.map(|active| active.1).collect();
+        segments.sort_unstable();
+        (criterion, segments)
+    };
+    Criterion::ALL.into_iter().map(of).filter(|(_, segments)| !segments.is_empty()).collect()
+}

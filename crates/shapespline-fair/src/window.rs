@@ -1,0 +1,99 @@
+//! Windows: the stretches of a curve that are solved by themselves, the rest held.
+
+use crate::{
+    chain::{Chain, Freedom},
+    element::Node,
+    rows::Rules,
+    segment::Demands,
+};
+
+/// Free nodes beside a segment that fails. A change of one node is felt some 3.7 times less at each
+/// further one: beyond these the plain cubic would change by less than 1e−4.
+pub(crate) const BESIDE: usize = 8;
+
+/// Neighbouring nodes that are free.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Window {
+    /// The first of them.
+    pub(crate) start: usize,
+    /// How many.
+    pub(crate) count: usize,
+}
+
+/// The windows around segments that fail (ascending), merged where they meet.
+pub(crate) fn windows(failing: &[usize], nodes: usize, closed: bool, beside: usize) -> Vec<Window> {
+    let mut all: Vec<Window> = Vec::new();
+    // Runs of the line of nodes; beyond the ends of a closed curve for the moment.
+    for &k in failing {
+        let (mut from, mut to) = (k as isize - beside as isize, (k + 2 + beside) as isize);
+        if !closed {
+            (from, to) = (from.max(0), to.min(nodes as isize));
+        }
+        match all.last_mut() {
+            // Held nodes between two windows are at least one.
+            Some(last) if from <= last.start as isize + last.count as isize - BIAS => {
+                last.count = (to - last.start as isize + BIAS) as usize;
+            }
+            _ => all.push(Window { start: (from + BIAS) as usize, count: (to - from) as usize }),
+        }
+    }
+    if closed && let [first, .., last] = all.as_mut_slice() {
+        let end = last.start + last.count;
+        if end >= first.start + nodes {
+            last.count = first.start + nodes + first.count - last.start;
+            all.remove(0);
+        }
+    }
+    for window in &mut all {
+        if window.count >= nodes || (closed && window.count + 1 >= nodes) {
+            return vec![Window { start: 0, count: nodes }];
+        }
+        window.start = (window.start + nodes * (BIAS as usize) - BIAS as usize) % nodes;
+    }
+    all
+}
+
+/// Keeps indices before the first node positive.
+const BIAS: isize = 1 << 20;
+
+impl Window {
+    /// Whether a segment lies in the window, in a curve with so many nodes.
+    pub(crate) fn touches(self, segment: usize, nodes: usize) -> bool {
+        (segment + nodes - self.start) % nodes < self.count
+    }
+
+    /// The chain of a window, at nodes of the whole curve.
+    pub(crate) fn chain(self, demands: &Demands<'_>, nodes: &[Node], rules: Rules) -> Chain {
+        let polygon = demands.checker.polygon();
+        let (total, n) = (nodes.len(), polygon.segments());
+        let whole = self.count == total;
+        // With a held node on each side, where there is one.
+        let (first, count) = if whole {
+            (0, total)
+        } else {
+            let before = usize::from(polygon.is_closed() || self.start > 0);
+            let after = usize::from(polygon.is_closed() || self.start + self.count < total);
+            ((self.start + total - before) % total, self.count + before + after)
+        };
+        let held = |i: usize| {
+            let inside = (i + total - self.start) % total < self.count;
+            let end = !polygon.is_closed() && (i == 0 || i + 1 == total);
+            match (inside, end && polygon.tangents().is_some()) {
+                (false, _) => Freedom::Held,
+                (true, true) => Freedom::TangentHeld,
+                (true, false) => Freedom::Free,
+            }
+        };
+        let index = |j: usize| (first + j) % total;
+        // Of a closed curve the last segment ends at the first node.
+        let ring = whole && polygon.is_closed();
+        let segments = if ring { count } else { count - 1 };
+        Chain::new(
+            (0..segments).map(|j| demands.segment((first + j) % n)).collect(),
+            (0..count).map(|j| nodes[index(j)]).collect(),
+            (0..count).map(|j| held(index(j))).collect(),
+            first,
+            rules,
+        )
+    }
+}
