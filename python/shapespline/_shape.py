@@ -102,8 +102,8 @@ def check_shape(
     preservation behavior of spline curves*, Definitions 3.1, 3.16, 6.1, 8.2, 9.2 and 10.1). Others
     are taken apart into Bézier pieces, rational or not, and the sign questions on γ'×γ'' and
     det[γ', γ'', γ'''] are decided by certified subdivision of their Bernstein form; nothing is
-    sampled. What rounding leaves open is ``undecided`` with its interval, and the report is not
-    ``ok``. Cost O(n), on all threads for long curves.
+    sampled. What rounding leaves open is ``undecided`` with its interval; the report is ``ok`` if
+    nothing is violated. Cost O(n), on all threads for long curves.
 
     Examples
     --------

@@ -145,7 +145,7 @@ def _add_check(commands: argparse._SubParsersAction[Parser]) -> None:
         "check",
         help=text,
         description=text.capitalize() + ".",
-        epilog="Exit status: 0 when the shape is kept, 1 when it is not or stays undecided, "
+        epilog="Exit status: 0 when nothing violates the shape, 1 when something does, "
         "2 for bad input.",
     )
     add_points(parser)

@@ -194,10 +194,7 @@ impl Calls {
     ) {
         let (places, zero) = (stretch.places(), tolerances.zero);
         let (directions, binormals) = (stretch.directions(), stretch.binormals());
-        let mut sines = [0.0; Stretch::ROOM];
-        for j in 0..stretch.less(1) {
-            sines[j] = binormals.get(j).length();
-        }
+        let sines = stretch.sines();
         let planes = u64::from(wanted.any(Self::of(Criterion::Coplanarity)));
         let (mut signs, mut special) = ([0; Stretch::ROOM], [0; Stretch::ROOM]);
         let mut any = 0;

@@ -6,11 +6,23 @@ use glam::DVec3;
 use shapespline_geometry::DataPolygon;
 
 use crate::{
-    Calls, Criteria, Criterion, Faults, Record, ShapeReport, StretchChecker, Tolerances,
+    Calls, Criteria, Criterion, Faults, Record, ShapeReport, StretchChecker, Tolerances, Undecided,
     WindowChecker,
     faults::{Cones, Situation, faults},
     margin, regular,
+    rounding::Lean,
+    stretch::far,
 };
+
+/// A cubic between two points.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Cubic {
+    /// First and last leg.
+    pub(crate) legs: [DVec3; 2],
+    pub(crate) chord: DVec3,
+    /// Its largest coordinate.
+    pub(crate) far: f64,
+}
 
 /// The shape criteria of one data polygon.
 #[derive(Debug, Clone)]
@@ -46,18 +58,38 @@ impl<'a> Checker<'a> {
         &self.calls
     }
 
-    /// The exact verdict on a segment with end legs `a, c`: which conditions fail.
+    /// What is not proved of a segment with end legs `a, c`: conditions that fail, and conditions of which
+    /// rounding hides whether they do.
     #[inline]
     #[must_use]
     pub fn faults(&self, segment: usize, legs: [DVec3; 2]) -> Faults {
+        self.judge(segment, &self.cubic(segment, legs), Lean::Against)
+    }
+
+    /// What fails on a segment with end legs `a, c`, however control points and arithmetic round.
+    #[inline]
+    #[must_use]
+    pub fn violations(&self, segment: usize, legs: [DVec3; 2]) -> Faults {
+        self.judge(segment, &self.cubic(segment, legs), Lean::For)
+    }
+
+    #[inline]
+    pub(crate) fn judge(&self, segment: usize, cubic: &Cubic, lean: Lean) -> Faults {
         let calls = self.calls[segment];
         if calls.is_empty() {
             return Faults::default();
         }
-        faults(&self.situation(segment, legs), calls, || self.cones(segment))
+        faults(&self.situation(segment, cubic), calls, lean, || self.cones(segment))
     }
 
-    /// The segments that fail, ascending, with their faults. Cost O(N), on all threads for long
+    /// The cubic of end legs between two points of the polygon.
+    #[inline]
+    fn cubic(&self, segment: usize, legs: [DVec3; 2]) -> Cubic {
+        let polygon = self.polygon();
+        Cubic { legs, chord: polygon.chord(segment), far: far(polygon, segment) }
+    }
+
+    /// The segments that are not proved to keep the shape, ascending, with what is not proved. Cost O(N), on all threads for long
     /// curves.
     pub fn all_faults<L>(&self, legs: L) -> Vec<(usize, Faults)>
     where
@@ -72,9 +104,14 @@ impl<'a> Checker<'a> {
         WindowChecker::new(self.local, Some(&self.calls))
     }
 
-    /// The record of one criterion on a segment: verdict, margin and place.
+    /// The record of one criterion on a segment: verdict, margin and place. Where rounding hides the verdict
+    /// the record says unsatisfied with margin zero, and the report has an [`Undecided`].
     #[must_use]
     pub fn record(&self, segment: usize, legs: [DVec3; 2], criterion: Criterion) -> Record {
+        self.record_of(segment, &self.cubic(segment, legs), criterion)
+    }
+
+    pub(crate) fn record_of(&self, segment: usize, cubic: &Cubic, criterion: Criterion) -> Record {
         let calls = self.calls[segment];
         let applicable = calls.any(Calls::of(criterion));
         let mut record = Record {
@@ -88,7 +125,7 @@ impl<'a> Checker<'a> {
         if !applicable {
             return record;
         }
-        let s = self.situation(segment, legs);
+        let s = self.situation(segment, cubic);
         let margin = match criterion {
             Criterion::Convexity => margin::convexity(&s),
             Criterion::Inflection => margin::inflection(&s),
@@ -99,8 +136,16 @@ impl<'a> Checker<'a> {
             Criterion::GlobalConvexity => margin::global_convexity(&s),
             Criterion::Regular => regular::margin(&s, calls),
         };
-        record.satisfied = !self.faults(segment, legs).any(Faults::of(criterion));
-        record.margin = margin.value;
+        let of = Faults::of(criterion);
+        record.satisfied = !self.judge(segment, cubic, Lean::Against).any(of);
+        // The proof decides on which side of zero the margin lies.
+        record.margin = if record.satisfied {
+            margin.value.max(f64::MIN_POSITIVE)
+        } else if self.judge(segment, cubic, Lean::For).any(of) {
+            margin.value.min(0.0)
+        } else {
+            0.0
+        };
         record.location =
             self.polygon().parameters()[segment] + margin.at * self.polygon().spacing(segment);
         record
@@ -111,33 +156,56 @@ impl<'a> Checker<'a> {
     where
         L: Fn(usize) -> [DVec3; 2] + Sync,
     {
-        self.report_of(&self.all_faults(&legs), legs)
+        let open: Vec<usize> = self.all_faults(&legs).into_iter().map(|fault| fault.0).collect();
+        self.report_of(&open, legs)
     }
 
-    /// The report that belongs to faults already found (by [`Checker::all_faults`]).
-    pub fn report_of<L>(&self, faults: &[(usize, Faults)], legs: L) -> ShapeReport
+    /// The report on a curve of which all segments but some (ascending) are proved to keep the shape.
+    pub fn report_of<L>(&self, open: &[usize], legs: L) -> ShapeReport
     where
         L: Fn(usize) -> [DVec3; 2],
     {
-        self.report_with(faults, |i, criterion| self.record(i, legs(i), criterion))
+        let verdict = |i: usize| {
+            let cubic = self.cubic(i, legs(i));
+            [self.judge(i, &cubic, Lean::Against), self.judge(i, &cubic, Lean::For)]
+        };
+        self.report_with(open, verdict, |i, criterion| self.record(i, legs(i), criterion))
     }
 
-    /// The same, given the records.
+    /// The same, given what is not proved and what is violated of a segment, and the records.
     pub(crate) fn report_with(
         &self,
-        faults: &[(usize, Faults)],
+        segments: &[usize],
+        verdict: impl Fn(usize) -> [Faults; 2],
         record: impl Fn(usize, Criterion) -> Record,
     ) -> ShapeReport {
         let mut report = self.blank_report();
-        for &(i, faults) in faults {
+        for &i in segments {
+            let [open, violated] = verdict(i);
             for criterion in Criterion::ALL {
-                if faults.any(Faults::of(criterion)) {
+                let of = Faults::of(criterion);
+                if violated.any(of) {
                     report.counts[criterion as usize].violated += 1;
                     report.violations.push(record(i, criterion));
+                } else if open.any(of) {
+                    let interval = self.interval(i, open.only(of));
+                    report.undecided.push(Undecided { segment: i, criterion, interval });
                 }
             }
         }
         report
+    }
+
+    /// The parameters between which some conditions are asked.
+    pub(crate) fn interval(&self, segment: usize, faults: Faults) -> [f64; 2] {
+        let [start, end] = [segment, segment + 1].map(|i| self.polygon().parameters()[i]);
+        if Faults::AT_START.contains(faults) {
+            [start; 2]
+        } else if Faults::AT_END.contains(faults) {
+            [end; 2]
+        } else {
+            [start, end]
+        }
     }
 
     /// The report that says how often each criterion applies, and nothing else yet.
@@ -153,10 +221,10 @@ impl<'a> Checker<'a> {
     }
 
     #[inline]
-    fn situation(&self, i: usize, legs: [DVec3; 2]) -> Situation {
+    fn situation(&self, i: usize, &Cubic { legs, chord, far }: &Cubic) -> Situation {
         let [p, q] = self.polygon().binormals(i);
         let [before, after] = self.polygon().binormals_beside(i);
-        Situation::new(legs, self.polygon().chord(i), [before, p, q, after])
+        Situation::new(legs, chord, [before, p, q, after], far)
     }
 
     pub(crate) fn cones(&self, i: usize) -> Cones {

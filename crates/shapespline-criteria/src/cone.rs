@@ -6,6 +6,8 @@ use shapespline_geometry::bernstein::{
     Positivity, multiply_quadratics, positivity, quadratic_is_positive,
 };
 
+use crate::rounding::{Lean, UNIT, sum};
+
 /// A vector quadratic in Bernstein form.
 pub(crate) type Quadratic = [DVec3; 3];
 
@@ -31,9 +33,73 @@ fn quartic(v: Quadratic, n: DVec3, epsilon: f64) -> [f64; 5] {
     std::array::from_fn(|i| inside * along[i] - outside * (x[i] + y[i] + z[i]))
 }
 
-/// Whether the vector at an end of its interval lies inside the cone.
-pub(crate) fn end_is_inside(v: DVec3, n: DVec3, epsilon: f64) -> bool {
-    quartic([v; 3], n, epsilon)[0] > 0.0
+/// Axis of a double cone: a unit vector, and how far from it the true one may lie.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Axis {
+    pub(crate) direction: DVec3,
+    pub(crate) off: f64,
+}
+
+/// A vector quadratic, and how far its coefficients may be off.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Field {
+    v: Quadratic,
+    off: [f64; 3],
+}
+
+impl Field {
+    /// `off`: how far each coordinate of each coefficient may be off.
+    pub(crate) fn new(v: Quadratic, off: [f64; 3]) -> Self {
+        // Lengths from coordinates: at most √3 times as much.
+        Self { v, off: off.map(|off| 1.75 * off) }
+    }
+
+    /// The part on `[from, to]` of its interval. Errors are blossomed as values are; the blossoming itself
+    /// rounds by less than `8u` of what it takes the mean of.
+    pub(crate) fn part(&self, from: f64, to: f64) -> Self {
+        let bounds = [0, 1, 2].map(|k| self.off[k] + 8.0 * UNIT * sum(self.v[k]));
+        let off = part(bounds.map(DVec3::splat), from, to).map(|x| x.x);
+        Self { v: part(self.v, from, to), off }
+    }
+
+    /// How far the parts of a coefficient along and across an axis may be off.
+    fn errors(&self, axis: &Axis) -> [f64; 3] {
+        [0, 1, 2].map(|k| self.off[k] + sum(self.v[k]) * (axis.off + 6.0 * UNIT))
+    }
+
+    /// Whether the vector at an end, 0 or 2, lies inside a double cone.
+    pub(crate) fn end_is_inside(&self, end: usize, axis: &Axis, epsilon: f64, lean: Lean) -> bool {
+        let (v, off) = (self.v[end], self.errors(axis)[end]);
+        let (size, off) = (sum(v) + off, off + 8.0 * UNIT * sum(v));
+        let depth = quartic([v; 3], axis.direction, epsilon)[0];
+        depth + lean.sign() * (2.0 * size * off) > 0.0
+    }
+
+    /// Whether the vector stays inside a double cone.
+    pub(crate) fn is_inside(&self, axis: &Axis, epsilon: f64, lean: Lean) -> bool {
+        let off = self.errors(axis);
+        let along = self.v.map(|x| x.dot(axis.direction));
+        let has_side = |side: f64| {
+            let [alpha, middle, beta] = [0, 1, 2]
+                .map(|k| side * along[k] + lean.sign() * (off[k] + 8.0 * UNIT * along[k].abs()));
+            quadratic_is_positive(alpha, 2.0 * middle, beta)
+        };
+        if !(has_side(1.0) || has_side(-1.0)) {
+            return false;
+        }
+        // A product of two parts is off by size times error twice. Up to 60 subdivisions round by 2u each
+        // of what they take the mean of.
+        let sizes = [0, 1, 2].map(|k| sum(self.v[k]) + off[k]);
+        let errors = [0, 1, 2].map(|k| off[k] + 128.0 * UNIT * sizes[k]);
+        let errors = multiply_quadratics(sizes, errors);
+        let depth = quartic(self.v, axis.direction, epsilon);
+        let depth: [f64; 5] = std::array::from_fn(|i| depth[i] + lean.sign() * (2.0 * errors[i]));
+        match positivity(depth) {
+            Positivity::Positive => true,
+            Positivity::Fails { .. } => false,
+            Positivity::Undecided { .. } => lean == Lean::For,
+        }
+    }
 }
 
 /// Whether `v` stays inside the double cone on all of its interval.

@@ -6,14 +6,14 @@ use shapespline_geometry::{DataPolygon, bernstein::quadratic_is_positive, near_o
 use crate::{
     Calls, Criterion, Tolerances,
     calls::separation_between,
-    cone::{Quadratic, end_is_inside, inside, part},
+    cone::{Axis, Field, Quadratic},
     global::is_globally_convex,
     regular::is_regular,
-    turning::turns,
+    rounding::{Coarse, Lean, Rounded, Signs, UNIT, leg_error, sum},
 };
 
-/// The conditions that fail on a segment `m`, as the failure sets (5.40)–(5.57) of paper 001
-/// (corrected by E3) and Theorems 13.6–13.11 of paper 002 distinguish them: the place of a failure
+/// Conditions that fail on a segment `m`, or are not proved to hold, as the failure sets (5.40)–(5.57) of
+/// paper 001 (corrected by E3) and Theorems 13.6–13.11 of paper 002 distinguish them: the place of a failure
 /// decides which tensions can mend it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -61,6 +61,19 @@ impl Faults {
     /// The curve stops somewhere on the segment.
     pub const NOT_REGULAR: Self = Self(1 << 19);
 
+    /// Conditions at node m alone.
+    pub(crate) const AT_START: Self = Self::CONVEXITY_AT_START
+        .and(Self::INFLECTION_AT_START)
+        .and(Self::TURNING_AT_START)
+        .and(Self::COPLANARITY_AT_START)
+        .and(Self::LINE_AT_START);
+    /// Conditions at node m+1 alone.
+    pub(crate) const AT_END: Self = Self::CONVEXITY_AT_END
+        .and(Self::INFLECTION_AT_END)
+        .and(Self::TURNING_AT_END)
+        .and(Self::COPLANARITY_AT_END)
+        .and(Self::LINE_AT_END);
+
     /// Whether nothing fails.
     #[inline]
     #[must_use]
@@ -73,6 +86,18 @@ impl Faults {
     #[must_use]
     pub fn any(self, other: Self) -> bool {
         self.0 & other.0 != 0
+    }
+
+    /// Whether all faults of `other` are among these.
+    #[must_use]
+    pub fn contains(self, other: Self) -> bool {
+        other.0 & !self.0 == 0
+    }
+
+    /// Those that are among others.
+    #[must_use]
+    pub fn only(self, other: Self) -> Self {
+        Self(self.0 & other.0)
     }
 
     /// The faults together.
@@ -105,15 +130,21 @@ pub(crate) struct Situation {
     /// Those at the nodes beside them.
     pub(crate) before: DVec3,
     pub(crate) after: DVec3,
+    /// How far each coordinate of `a, c` and `chord` may be off.
+    pub(crate) slack: f64,
 }
 
 impl Situation {
     /// With the binormal vectors at the node before, at the two nodes of the segment, and at the node
-    /// after.
+    /// after; `far`: the largest coordinate of the two end points.
     #[inline]
-    pub(crate) fn new(legs: [DVec3; 2], chord: DVec3, binormals: [DVec3; 4]) -> Self {
+    pub(crate) fn new(legs: [DVec3; 2], chord: DVec3, binormals: [DVec3; 4], far: f64) -> Self {
+        let size = chord.abs().max_element();
         let (legs, chord) = near_one(legs, chord);
-        Self::of_scaled(legs, chord, binormals)
+        // In the unit that the legs have now, which is mostly the one they had.
+        let far = far / size * chord.abs().max_element();
+        let slack = leg_error(far, sum(legs[0]) + sum(chord) + sum(legs[1]));
+        Self::of_scaled(legs, chord, binormals, slack)
     }
 
     /// The same of legs and chord [near one](near_one) in size.
@@ -122,11 +153,12 @@ impl Situation {
         [a, c]: [DVec3; 2],
         chord: DVec3,
         [before, p, q, after]: [DVec3; 4],
+        slack: f64,
     ) -> Self {
         // With b = L − a − c: a×b = a×L − a×c, b×c = L×c − a×c.
         let middle = a.cross(c);
         let omega = [a.cross(chord) - middle, middle, chord.cross(c) - middle];
-        Self { a, c, chord, omega, p, q, before, after }
+        Self { a, c, chord, omega, p, q, before, after, slack }
     }
 
     /// `ω·n` as `[α, γ, β]` of Lemma 5.1.
@@ -151,6 +183,25 @@ impl Situation {
     /// `γ'` in Bernstein form, less a factor 3.
     pub(crate) fn tangent_quadratic(&self) -> Quadratic {
         [self.a, self.chord - self.a - self.c, self.c]
+    }
+
+    /// `ω` and how far it may be off.
+    fn omega_field(&self) -> Field {
+        let [first, middle, last] = self.omega_errors();
+        Field::new(self.omega_quadratic(), [first, 0.5 * middle, last])
+    }
+
+    /// `γ'` likewise. A leg that is zero stays zero, however its control points are rounded.
+    fn tangent_field(&self) -> Field {
+        let own = |leg: DVec3| if leg == DVec3::ZERO { 0.0 } else { self.slack };
+        let sums = sum(self.a) + sum(self.chord) + sum(self.c);
+        let middle = 3.0 * self.slack + 3.0 * UNIT * sums;
+        Field::new(self.tangent_quadratic(), [own(self.a), middle, own(self.c)])
+    }
+
+    /// Direction of a binormal vector, and how far it may be off.
+    fn plane_axis(direction: DVec3, binormal: DVec3) -> Axis {
+        Axis { direction, off: 12.0 * UNIT / binormal.length() + 4.0 * UNIT }
     }
 }
 
@@ -200,126 +251,159 @@ impl Cones {
 /// Collinearity is asked on this part of a segment next to the node.
 pub(crate) const LINE_PART: f64 = 0.5;
 
-/// The calls that are not met beyond doubt: none, and the exact verdict is that there is no fault. A few
-/// signs without branches; where one of them says otherwise nothing is decided.
+/// The calls that are not met beyond doubt: none, and there is no fault. A few signs without branches, within
+/// coarse bounds; where those are not enough nothing is decided.
 #[inline(always)]
-pub(crate) fn doubtful(s: &Situation, calls: u32) -> u32 {
+pub(crate) fn doubtful(s: &Situation, bounds: Coarse, calls: u32) -> u32 {
     let ([a0, g0, b0], [a1, g1, b1]) = (s.omega_along(s.p), s.omega_along(s.q));
     let (before, after) = (s.omega[0].dot(s.before), s.omega[2].dot(s.after));
-    let determinant = s.determinant();
+    let (determinant, Coarse { turns: [o, p, q, r], twist }) = (s.determinant(), bounds);
     let met = |holds: bool, call: Calls| if holds { call.bits() } else { 0 };
     // A middle coefficient that is not negative needs no root.
-    let start = (a0 > 0.0) & (b1 > 0.0);
-    let convex = start & (a1 > 0.0) & (b0 > 0.0) & (g0 >= 0.0) & (g1 >= 0.0);
-    let inflecting = start & (a1 < 0.0) & (b0 < 0.0);
-    let met = met(convex, Calls::CONVEXITY)
+    let start = (a0 > p) & (b1 > q);
+    let convex = start & (a1 > q) & (b0 > p) & (g0 >= p) & (g1 >= q);
+    let inflecting = start & (a1 < -q) & (b0 < -p);
+    // Nor does the chord turn another way than the ends then.
+    let met = met(convex, Calls::CONVEXITY.and(Calls::GLOBAL_CONVEXITY))
         | met(inflecting, Calls::INFLECTION)
         // (a×L)·P = (a×b)·P + (a×c)·P, and (L×c)·P likewise.
-        | met((a0 > 0.0) & (a0 + g0 > 0.0), Calls::TURNING_AT_START)
-        | met((b1 > 0.0) & (b1 + g1 > 0.0), Calls::TURNING_AT_END)
-        | met((a1 > 0.0) & (b0 > 0.0), Calls::TURNS_ALIKE)
-        | met((a1 < 0.0) & (b0 < 0.0), Calls::TURNS_APART)
-        | met(before > 0.0, Calls::BEFORE_ALIKE)
-        | met(before < 0.0, Calls::BEFORE_APART)
-        | met(after > 0.0, Calls::AFTER_ALIKE)
-        | met(after < 0.0, Calls::AFTER_APART)
-        | met(determinant > 0.0, Calls::RIGHT_TORSION)
-        | met(determinant < 0.0, Calls::LEFT_TORSION);
+        | met((a0 > p) & (a0 + g0 > 2.0 * p), Calls::TURNING_AT_START)
+        | met((b1 > q) & (b1 + g1 > 2.0 * q), Calls::TURNING_AT_END)
+        | met((a1 > q) & (b0 > p), Calls::TURNS_ALIKE)
+        | met((a1 < -q) & (b0 < -p), Calls::TURNS_APART)
+        | met(before > o, Calls::BEFORE_ALIKE)
+        | met(before < -o, Calls::BEFORE_APART)
+        | met(after > r, Calls::AFTER_ALIKE)
+        | met(after < -r, Calls::AFTER_APART)
+        | met(determinant > twist, Calls::RIGHT_TORSION)
+        | met(determinant < -twist, Calls::LEFT_TORSION);
     calls & !met
 }
 
-/// The exact verdict on a segment; the cones are made where a call needs them.
+/// What fails on a segment; doubts are counted as `lean` says. The cones are made where a call needs them.
 #[inline]
-pub(crate) fn faults(s: &Situation, calls: Calls, cones: impl FnOnce() -> Cones) -> Faults {
-    let faults = sign_faults(s, calls);
+pub(crate) fn faults(
+    s: &Situation,
+    calls: Calls,
+    lean: Lean,
+    cones: impl FnOnce() -> Cones,
+) -> Faults {
+    let faults = sign_faults(s, calls, lean);
     if calls.any(Calls::of(Criterion::Coplanarity).and(Calls::of(Criterion::Collinearity))) {
-        return faults.and(cone_faults(s, calls, &cones()));
+        return faults.and(cone_faults(s, calls, &cones(), lean));
     }
     faults
 }
 
+/// Whether `α(1−t)² + γt(1−t) + βt²` is positive: Lemma 5.1, with the rounding of its root.
+#[inline(always)]
+pub(crate) fn is_positive([alpha, gamma, beta]: [Rounded; 3], lean: Lean) -> bool {
+    let root = Rounded { error: gamma.error + 8.0 * UNIT * gamma.value.abs(), ..gamma };
+    quadratic_is_positive(alpha.toward(lean), root.toward(lean), beta.toward(lean))
+}
+
 /// The faults of convexity, inflection, turning and torsion, and of a curve that stops.
 #[inline]
-pub(crate) fn sign_faults(s: &Situation, calls: Calls) -> Faults {
+pub(crate) fn sign_faults(s: &Situation, calls: Calls, lean: Lean) -> Faults {
+    let mut stops = Faults::default();
+    stops.add(Faults::NOT_REGULAR, calls.any(Calls::REGULAR) && !is_regular(s, calls));
+    let coarse = Signs::coarse(s);
+    let faults = faults_of_signs(&coarse, calls, Lean::Against);
+    if faults.is_empty() || faults == faults_of_signs(&coarse, calls, Lean::For) {
+        return faults.and(stops);
+    }
+    faults_of_signs(&Signs::fine(s), calls, lean).and(stops)
+}
+
+#[inline(always)]
+fn faults_of_signs(signs: &Signs, calls: Calls, lean: Lean) -> Faults {
     let mut faults = Faults::default();
+    // Written so that a NaN fails.
+    let positive = |x: Rounded| x.is_positive(lean);
+    let Signs { omega: omega @ [[a0, g0, b0], [a1, g1, b1]], beside, twist } = *signs;
+    if calls.any(Calls::CONVEXITY) {
+        let (start, end) = (positive(a0) && positive(a1), positive(b0) && positive(b1));
+        faults.add(Faults::CONVEXITY_AT_START, !start);
+        faults.add(Faults::CONVEXITY_AT_END, !end);
+        let between = is_positive([a0, g0, b0], lean) && is_positive([a1, g1, b1], lean);
+        faults.add(Faults::CONVEXITY_BETWEEN, start && end && !between);
+    } else if calls.any(Calls::INFLECTION) {
+        faults.add(Faults::INFLECTION_AT_START, !(positive(a0) && positive(-a1)));
+        faults.add(Faults::INFLECTION_AT_END, !(positive(-b0) && positive(b1)));
+    }
     if calls.any(Calls::of(Criterion::Turning)) {
-        let [start, end] = turns(s, calls);
-        faults.add(Faults::TURNING_AT_START, !start);
-        faults.add(Faults::TURNING_AT_END, !end);
-    }
-    if calls.any(Calls::REGULAR) {
-        faults.add(Faults::NOT_REGULAR, !is_regular(s, calls));
-    }
-    if calls.any(Calls::CONVEXITY.and(Calls::INFLECTION)) {
-        let ([a0, g0, b0], [a1, g1, b1]) = (s.omega_along(s.p), s.omega_along(s.q));
-        if calls.any(Calls::CONVEXITY) {
-            // Written so that a NaN fails.
-            let (start, end) = (a0 > 0.0 && a1 > 0.0, b0 > 0.0 && b1 > 0.0);
-            faults.add(Faults::CONVEXITY_AT_START, !start);
-            faults.add(Faults::CONVEXITY_AT_END, !end);
-            let between = quadratic_is_positive(a0, g0, b0) && quadratic_is_positive(a1, g1, b1);
-            faults.add(Faults::CONVEXITY_BETWEEN, start && end && !between);
-        } else if calls.any(Calls::INFLECTION) {
-            faults.add(Faults::INFLECTION_AT_START, !(a0 > 0.0 && a1 < 0.0));
-            faults.add(Faults::INFLECTION_AT_END, !(b0 < 0.0 && b1 > 0.0));
-        }
+        // Where the signs of two binormal vectors agree, oppose each other, or are not asked for.
+        let sided = |x: Rounded, alike: Calls, apart: Calls| {
+            (!calls.any(alike) || positive(x)) && (!calls.any(apart) || positive(-x))
+        };
+        let pair = |x: Rounded| sided(x, Calls::TURNS_ALIKE, Calls::TURNS_APART);
+        // The chord turns as (a×L)·P = α + γ, and (L×c)·P' = β + γ.
+        let at = |own: Rounded, middle: Rounded, other: Rounded| {
+            positive(own) && positive(own + middle) && pair(other)
+        };
+        let start = !calls.any(Calls::TURNING_AT_START) || at(a0, g0, a1);
+        let end = !calls.any(Calls::TURNING_AT_END) || at(b1, g1, b0);
+        let before = sided(beside[0], Calls::BEFORE_ALIKE, Calls::BEFORE_APART);
+        let after = sided(beside[1], Calls::AFTER_ALIKE, Calls::AFTER_APART);
+        faults.add(Faults::TURNING_AT_START, !(start && before));
+        faults.add(Faults::TURNING_AT_END, !(end && after));
     }
     if calls.any(Calls::GLOBAL_CONVEXITY) {
-        faults.add(Faults::GLOBAL_CONVEXITY, !is_globally_convex(s));
+        faults.add(Faults::GLOBAL_CONVEXITY, !is_globally_convex(&omega, lean));
     }
     if calls.any(Calls::RIGHT_TORSION) {
-        faults.add(Faults::TORSION, !(s.determinant() > 0.0));
+        faults.add(Faults::TORSION, !positive(twist));
     } else if calls.any(Calls::LEFT_TORSION) {
-        faults.add(Faults::TORSION, !(s.determinant() < 0.0));
+        faults.add(Faults::TORSION, !positive(-twist));
     }
     faults
 }
 
 /// The faults of coplanarity and collinearity.
-pub(crate) fn cone_faults(s: &Situation, calls: Calls, cones: &Cones) -> Faults {
+pub(crate) fn cone_faults(s: &Situation, calls: Calls, cones: &Cones, lean: Lean) -> Faults {
     let mut faults = Faults::default();
     if calls.any(Calls::COPLANARITY.and(Calls::SPLIT_COPLANARITY)) {
         let (epsilon, normals) = cones.plane;
-        let end_is_near = |w: DVec3| normals.iter().all(|&n| end_is_inside(w, n, epsilon));
-        let is_near = |w: Quadratic| normals.iter().all(|&n| inside(w, n, epsilon).holds());
-        let omega = s.omega_quadratic();
-        let (start, end) = (end_is_near(omega[0]), end_is_near(omega[2]));
+        let axes = [(normals[0], s.p), (normals[1], s.q)].map(|(n, p)| Situation::plane_axis(n, p));
+        let end_is_near =
+            |f: &Field, end: usize| axes.iter().all(|n| f.end_is_inside(end, n, epsilon, lean));
+        let is_near = |f: &Field| axes.iter().all(|n| f.is_inside(n, epsilon, lean));
+        let omega = s.omega_field();
+        let (start, end) = (end_is_near(&omega, 0), end_is_near(&omega, 2));
         faults.add(Faults::COPLANARITY_AT_START, !start);
         faults.add(Faults::COPLANARITY_AT_END, !end);
         if calls.any(Calls::COPLANARITY) {
-            faults.add(Faults::COPLANARITY_BETWEEN, start && end && !is_near(omega));
+            faults.add(Faults::COPLANARITY_BETWEEN, start && end && !is_near(&omega));
         } else {
             // A failure at the node itself is the fault above; here it is the rest of each part.
             let [left, right] = cones.parts;
-            let (first, last) = (part(omega, 0.0, left), part(omega, right, 1.0));
+            let (first, last) = (omega.part(0.0, left), omega.part(right, 1.0));
             let fails =
-                |v: Quadratic, node: bool, far: DVec3| !end_is_near(far) || (node && !is_near(v));
-            let split = fails(first, start, first[2]) || fails(last, end, last[0]);
+                |f: &Field, node: bool, far: usize| !end_is_near(f, far) || (node && !is_near(f));
+            let split = fails(&first, start, 2) || fails(&last, end, 0);
             faults.add(Faults::COPLANARITY_SPLIT, split);
         }
     }
     let (epsilon, lines) = cones.line;
+    let lines = lines.map(|direction| Axis { direction, off: 8.0 * UNIT });
+    // Whether the node, the far end of its part and what is between them lie inside.
+    let holds = |part: Field, line: &Axis, [node, far]: [usize; 2]| {
+        let ends = [node, far].map(|end| part.end_is_inside(end, line, epsilon, lean));
+        [ends[0], ends[1], !(ends[0] && ends[1]) || part.is_inside(line, epsilon, lean)]
+    };
     if calls.any(Calls::LINE_AT_START) {
-        let tangent = part(s.tangent_quadratic(), 0.0, LINE_PART);
-        let (node, far) = (
-            end_is_inside(tangent[0], lines[0], epsilon),
-            end_is_inside(tangent[2], lines[0], epsilon),
-        );
+        let part = s.tangent_field().part(0.0, LINE_PART);
+        let [node, far, between] = holds(part, &lines[0], [0, 2]);
         faults.add(Faults::LINE_AT_START, !node);
         faults.add(Faults::LINE_AFTER_START, !far);
-        let within = node && far && !inside(tangent, lines[0], epsilon).holds();
-        faults.add(Faults::LINE_INSIDE_START, within);
+        faults.add(Faults::LINE_INSIDE_START, !between);
     }
     if calls.any(Calls::LINE_AT_END) {
-        let tangent = part(s.tangent_quadratic(), 1.0 - LINE_PART, 1.0);
-        let (far, node) = (
-            end_is_inside(tangent[0], lines[1], epsilon),
-            end_is_inside(tangent[2], lines[1], epsilon),
-        );
+        let part = s.tangent_field().part(1.0 - LINE_PART, 1.0);
+        let [node, far, between] = holds(part, &lines[1], [2, 0]);
         faults.add(Faults::LINE_AT_END, !node);
         faults.add(Faults::LINE_BEFORE_END, !far);
-        let within = node && far && !inside(tangent, lines[1], epsilon).holds();
-        faults.add(Faults::LINE_INSIDE_END, within);
+        faults.add(Faults::LINE_INSIDE_END, !between);
     }
     faults
 }

@@ -9,9 +9,10 @@
 //! the control polygon turns by more than π, as `C > −min(A, B)` implies `C > −2√(AB)`. Its cases
 //! 1(a) and 2(b) are misprints: they accept the mirror image, which turns the wrong way.
 
-use shapespline_geometry::bernstein::quadratic_is_positive;
-
-use crate::faults::Situation;
+use crate::{
+    faults::{Situation, is_positive},
+    rounding::{Lean, Rounded},
+};
 
 /// `(a×L)·n` and `(L×c)·n` for both binormal vectors `n`.
 pub(crate) fn chord_turns(s: &Situation) -> [[f64; 2]; 2] {
@@ -19,16 +20,11 @@ pub(crate) fn chord_turns(s: &Situation) -> [[f64; 2]; 2] {
     [s.p, s.q].map(|n| [start.dot(n), end.dot(n)])
 }
 
-/// Whether the segment is globally convex, seen along both binormal vectors.
-pub(crate) fn is_globally_convex(s: &Situation) -> bool {
-    let [[a0, b0], [a1, b1]] = chord_turns(s);
-    // Written so that a NaN fails.
-    a0 > 0.0
-        && b0 > 0.0
-        && a1 > 0.0
-        && b1 > 0.0
-        && [s.p, s.q].into_iter().all(|n| {
-            let [alpha, gamma, beta] = s.omega_along(n);
-            quadratic_is_positive(alpha, gamma, beta)
-        })
+/// Whether a segment is globally convex, given `ω·n` for both binormal vectors: `[A, C, B]` each.
+pub(crate) fn is_globally_convex(omega: &[[Rounded; 3]; 2], lean: Lean) -> bool {
+    omega.iter().all(|&[start, middle, end]| {
+        (start + middle).is_positive(lean)
+            && (end + middle).is_positive(lean)
+            && is_positive([start, middle, end], lean)
+    })
 }

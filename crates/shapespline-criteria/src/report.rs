@@ -32,7 +32,7 @@ pub struct Count {
 }
 
 /// A criterion that could be neither proved nor refuted on a segment: something in it is zero to
-/// rounding. Segments of one cubic are always decided.
+/// rounding.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Undecided {
@@ -73,10 +73,21 @@ impl ShapeReport {
         Self { segments, criteria, counts, violations: Vec::new(), undecided: Vec::new() }
     }
 
-    /// Whether every criterion that applies is satisfied, and none is left open.
+    /// Whether no criterion that applies is violated. What rounding hides may still be
+    /// [undecided](Self::undecided).
     #[must_use]
     pub fn ok(&self) -> bool {
-        self.violations.is_empty() && self.undecided.is_empty()
+        self.violations.is_empty()
+    }
+
+    /// What the report says of the shape, in a word.
+    #[must_use]
+    pub fn verdict(&self) -> &'static str {
+        match (self.ok(), self.undecided.is_empty()) {
+            (true, true) => "preserved",
+            (true, false) => "undecided",
+            (false, _) => "violated",
+        }
     }
 
     /// The criteria that there is something to say about: those that were asked, and regularity, which
@@ -101,12 +112,7 @@ const LISTED: usize = 20;
 
 impl std::fmt::Display for ShapeReport {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let verdict = match (self.ok(), self.violations.is_empty()) {
-            (true, _) => "shape preserved",
-            (false, true) => "shape undecided",
-            (false, false) => "shape violated",
-        };
-        writeln!(f, "{verdict} on {} segments", self.segments)?;
+        writeln!(f, "shape {} on {} segments", self.verdict(), self.segments)?;
         writeln!(f, "{:<17}{:>10}{:>12}", "criterion", "violated", "applicable")?;
         for criterion in self.listed().iter() {
             let count = self.count(criterion);

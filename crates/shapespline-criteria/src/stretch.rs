@@ -9,6 +9,7 @@ use crate::{
     Calls, Criteria, Criterion, Faults, Tolerances, WindowChecker,
     faults::{Cones, Situation, doubtful, faults},
     regular::leads_along,
+    rounding::{Coarse, Lean, leg_error, sum},
 };
 
 /// The shape criteria of a polygon, asked stretch by stretch: to the bit what a
@@ -47,7 +48,8 @@ impl<'a> StretchChecker<'a> {
         Calls::count(&calls[stretch.own()])
     }
 
-    /// Adds those of a stretch's own segments that fail with the end legs `first, last`.
+    /// Adds those of a stretch's own segments that are not proved to keep the shape with the end legs
+    /// `first, last`.
     pub fn faults(
         &self,
         stretch: &Stretch,
@@ -76,7 +78,8 @@ impl<'a> StretchChecker<'a> {
         self.tolerances
     }
 
-    /// Adds the segments at some of a stretch's own places that fail with the end legs `first, last`.
+    /// Adds the segments at some of a stretch's own places that are not proved to keep the shape with the
+    /// end legs `first, last`.
     pub(crate) fn faults_among(
         &self,
         places: Range<usize>,
@@ -91,18 +94,31 @@ impl<'a> StretchChecker<'a> {
         let mut any = 1;
         if stretch.is_ordinary() {
             any = 0;
+            let far = stretch.far();
             let end = places.end.min(stretch.less(Stretch::BESIDE));
+            let (lengths, sines) = (stretch.lengths(), stretch.sines());
+            // ‖v‖₁ is at most √3 times the length.
+            const ROOT: f64 = 1.7321;
             for j in places.start - Stretch::BESIDE..end - Stretch::BESIDE {
-                let legs = [first.get(j + 3), last.get(j + 3)];
                 // Written out: `map` on arrays keeps the loop from working on several at once.
+                let [a, c] = [first.get(j + 3), last.get(j + 3)];
                 let around = [
                     binormals.get(j + 1),
                     binormals.get(j + 2),
                     binormals.get(j + 3),
                     binormals.get(j + 4),
                 ];
-                let s = Situation::of_scaled(legs, chords.get(j + 3), around);
-                doubts[j + 3] = doubtful(&s, calls[j + 3].bits());
+                let size = sum(a) + sum(c) + ROOT * lengths[j + 3];
+                let slack = leg_error(far, size);
+                let s = Situation::of_scaled([a, c], chords.get(j + 3), around, slack);
+                let turns = [
+                    ROOT * sines[j + 1],
+                    ROOT * sines[j + 2],
+                    ROOT * sines[j + 3],
+                    ROOT * sines[j + 4],
+                ];
+                let bounds = Coarse::new(size, slack, turns);
+                doubts[j + 3] = doubtful(&s, bounds, calls[j + 3].bits());
                 any |= doubts[j + 3];
             }
         }
@@ -117,34 +133,43 @@ impl<'a> StretchChecker<'a> {
             open => open & !regular != 0 || stops(j),
         };
         for j in places.filter(doubted) {
-            let faults = self.faults_at(stretch, calls[j], [first.get(j), last.get(j)], j);
+            let legs = [first.get(j), last.get(j)];
+            let faults = self.faults_at(stretch, calls[j], legs, j, Lean::Against);
             if !faults.is_empty() {
                 found.push((stretch.segment(self.polygon, j), faults));
             }
         }
     }
 
-    /// What fails on the segment at one of a stretch's own places.
+    /// What fails on the segment at one of a stretch's own places, doubts being counted as `lean` says.
     pub(crate) fn faults_at(
         &self,
         stretch: &Stretch,
         calls: Calls,
         legs: [DVec3; 2],
         j: usize,
+        lean: Lean,
     ) -> Faults {
         if calls.is_empty() {
             return Faults::default();
         }
-        let (chords, binormals) = (stretch.chords(), stretch.binormals());
+        let segment = stretch.segment(self.polygon, j);
+        let binormals = stretch.binormals();
         let around =
             [binormals.get(j - 2), binormals.get(j - 1), binormals.get(j), binormals.get(j + 1)];
-        let s = Situation::new(legs, chords.get(j), around);
-        faults(&s, calls, || {
+        let (chord, far) = (stretch.chords().get(j), far(self.polygon, segment));
+        let s = Situation::new(legs, chord, around, far);
+        faults(&s, calls, lean, || {
             let around = [j - 1, j, j + 1].map(|j| stretch.directions().get(j));
-            let segment = stretch.segment(self.polygon, j);
             Cones::new(self.polygon, segment, around, calls, &self.tolerances)
         })
     }
+}
+
+/// The largest coordinate of the ends of a segment.
+pub(crate) fn far(polygon: &DataPolygon, segment: usize) -> f64 {
+    let [p, q] = [segment, segment + 1].map(|i| polygon.points()[i].abs());
+    p.max(q).max_element()
 }
 
 #[cfg(test)]

@@ -19,12 +19,6 @@ use crate::{Calls, faults::Situation};
 /// A product that has to be positive, and the largest value that it could have.
 pub(crate) type Condition = (f64, f64);
 
-/// Whether a segment bends at its first and at its last node as it should.
-pub(crate) fn turns(s: &Situation, calls: Calls) -> [bool; 2] {
-    // Written so that a NaN fails.
-    [0, 1].map(|end| conditions(s, calls, end).all(|(value, _)| value > 0.0))
-}
-
 /// What is asked at the start (0) or at the end (1) of a segment.
 pub(crate) fn conditions(
     s: &Situation,

@@ -5,7 +5,7 @@ use std::{cell::Cell, ops::Range};
 use rayon::prelude::*;
 use shapespline_geometry::{DVec3, DataPolygon, Lanes, Stretch};
 
-use crate::{Calls, Criterion, Faults, StretchCalls, StretchChecker};
+use crate::{Calls, Criterion, Faults, StretchCalls, StretchChecker, rounding::Lean};
 
 /// Windows that are kept: a change of tension is felt over some 60 segments, in two windows or three.
 const KEPT: usize = 4;
@@ -74,7 +74,8 @@ impl<'a> WindowChecker<'a> {
         self.local.polygon()
     }
 
-    /// The segments that fail, ascending. Cost O(N), on all threads for long curves.
+    /// The segments that are not proved to keep the shape, ascending. Cost O(N), on all threads for long
+    /// curves.
     pub fn all_faults<L>(&mut self, legs: L) -> Vec<(usize, Faults)>
     where
         L: Fn(usize) -> [DVec3; 2] + Sync,
@@ -85,8 +86,8 @@ impl<'a> WindowChecker<'a> {
         self.in_blocks(faults, |all, found| all.extend(found))
     }
 
-    /// The segments that fail, ascending, and how many segments each criterion applies to: all that a
-    /// report on a curve without faults says. Cost O(N), on all threads for long curves.
+    /// The same, and how many segments each criterion applies to: all that a report on a curve without
+    /// faults says. Cost O(N), on all threads for long curves.
     pub fn look<L>(&mut self, legs: L) -> (Vec<(usize, Faults)>, [usize; Criterion::COUNT])
     where
         L: Fn(usize) -> [DVec3; 2] + Sync,
@@ -129,7 +130,8 @@ impl<'a> WindowChecker<'a> {
         })
     }
 
-    /// Adds those of some segments that fail with the end legs that `legs` says, ascending.
+    /// Adds those of some segments that are not proved to keep the shape with the end legs that `legs` says,
+    /// ascending.
     pub fn faults(
         &mut self,
         segments: Range<usize>,
@@ -141,7 +143,7 @@ impl<'a> WindowChecker<'a> {
         }
     }
 
-    /// The first of some segments that fails; windows after it are not looked at.
+    /// The first of some segments that is not proved to keep the shape; windows after it are not looked at.
     pub fn any_fault(
         &mut self,
         segments: Range<usize>,
@@ -157,12 +159,27 @@ impl<'a> WindowChecker<'a> {
         first
     }
 
-    /// What fails on one segment with some end legs.
+    /// What is not proved of one segment with some end legs.
     pub fn faults_at(&mut self, segment: usize, legs: [DVec3; 2]) -> Faults {
+        self.judge(segment, legs, Lean::Against)
+    }
+
+    /// What fails on one segment with some end legs as computed: of what is not proved, that which is not
+    /// merely lost in rounding.
+    pub fn failures_at(&mut self, segment: usize, legs: [DVec3; 2]) -> Faults {
+        self.judge(segment, legs, Lean::Even)
+    }
+
+    /// What fails on one segment with some end legs, however control points and arithmetic round.
+    pub fn violations_at(&mut self, segment: usize, legs: [DVec3; 2]) -> Faults {
+        self.judge(segment, legs, Lean::For)
+    }
+
+    fn judge(&mut self, segment: usize, legs: [DVec3; 2], lean: Lean) -> Faults {
         let local = self.local;
         let window = self.window(segment / Stretch::OWN);
         let j = segment % Stretch::OWN + Stretch::BESIDE;
-        local.faults_at(&window.stretch, window.calls[j], legs, j)
+        local.faults_at(&window.stretch, window.calls[j], legs, j, lean)
     }
 
     fn faults_of_part(
@@ -227,7 +244,8 @@ impl Window {
         }
     }
 
-    /// Adds those of some segments in the window that fail with the end legs that `legs` says.
+    /// Adds those of some segments in the window that are not proved to keep the shape with the end legs that
+    /// `legs` says.
     fn faults(
         &mut self,
         local: &StretchChecker<'_>,

@@ -63,10 +63,13 @@ pub struct Stretch {
     start: usize,
     places: usize,
     ordinary: bool,
+    far: f64,
     chords: Lanes,
     spacings: [f64; Self::ROOM],
+    lengths: [f64; Self::ROOM],
     directions: Lanes,
     binormals: Lanes,
+    sines: [f64; Self::ROOM],
 }
 
 impl Default for Stretch {
@@ -75,10 +78,13 @@ impl Default for Stretch {
             start: 0,
             places: 0,
             ordinary: true,
+            far: 0.0,
             chords: Lanes::default(),
             spacings: [0.0; Self::ROOM],
+            lengths: [0.0; Self::ROOM],
             directions: Lanes::default(),
             binormals: Lanes::default(),
+            sines: [0.0; Self::ROOM],
         }
     }
 }
@@ -103,7 +109,9 @@ impl Stretch {
         self.load_chords(polygon);
         self.find_directions(polygon);
         for j in 0..self.less(1) {
-            self.binormals.set(j, self.directions.get(j).cross(self.directions.get(j + 1)));
+            let binormal = self.directions.get(j).cross(self.directions.get(j + 1));
+            self.binormals.set(j, binormal);
+            self.sines[j] = binormal.length();
         }
         // Open polygons: no chords meet beyond the first and the last node.
         let inner = self.segments(polygon);
@@ -118,12 +126,13 @@ impl Stretch {
         let inside = own.start.saturating_sub(Self::BESIDE)..(own.end + Self::BESIDE).min(n);
         let skip = inside.start + Self::BESIDE - own.start;
         let nodes = inside.start..=inside.end;
-        let points = polygon.points()[nodes.clone()].windows(2);
+        let points = &polygon.points()[nodes.clone()];
         let parameters = polygon.parameters()[nodes].windows(2);
-        for (j, (p, u)) in (skip..self.less(0)).zip(points.zip(parameters)) {
+        for (j, (p, u)) in (skip..self.less(0)).zip(points.windows(2).zip(parameters)) {
             self.chords.set(j, p[1] - p[0]);
             self.spacings[j] = u[1] - u[0];
         }
+        self.far = largest(bytemuck::cast_slice(points));
         for j in (0..skip).chain(skip + inside.len()..places) {
             // Around a closed polygon; beyond an open end the last segment once more.
             let i = if polygon.is_closed() {
@@ -140,7 +149,8 @@ impl Stretch {
         let mut far = 0;
         for j in 0..self.less(0) {
             let chord = self.chords.get(j);
-            self.directions.set(j, chord / chord.length());
+            self.lengths[j] = chord.length();
+            self.directions.set(j, chord / self.lengths[j]);
             far += u64::from(!is_ordinary(chord));
         }
         self.ordinary = far == 0;
@@ -208,6 +218,13 @@ impl Stretch {
         self.ordinary
     }
 
+    /// The largest coordinate of the points at the ends of its own segments, or a larger number.
+    #[inline(always)]
+    #[must_use]
+    pub fn far(&self) -> f64 {
+        self.far
+    }
+
     /// The chords.
     #[inline(always)]
     #[must_use]
@@ -220,6 +237,13 @@ impl Stretch {
     #[must_use]
     pub fn spacings(&self) -> &[f64; Self::ROOM] {
         &self.spacings
+    }
+
+    /// The lengths of the chords, if all are of [ordinary](Self::is_ordinary) size.
+    #[inline(always)]
+    #[must_use]
+    pub fn lengths(&self) -> &[f64; Self::ROOM] {
+        &self.lengths
     }
 
     /// The unit chords, stand-ins included.
@@ -235,6 +259,26 @@ impl Stretch {
     pub fn binormals(&self) -> &Lanes {
         &self.binormals
     }
+
+    /// The lengths of the binormal vectors: sines of turning angles.
+    #[inline(always)]
+    #[must_use]
+    pub fn sines(&self) -> &[f64; Self::ROOM] {
+        &self.sines
+    }
+}
+
+/// The largest absolute value, of several numbers at once.
+fn largest(numbers: &[f64]) -> f64 {
+    let larger = |a: f64, b: f64| if b > a { b } else { a };
+    let (rows, rest) = numbers.as_chunks::<8>();
+    let mut most = [0.0; 8];
+    for row in rows {
+        for (most, x) in most.iter_mut().zip(row) {
+            *most = larger(*most, x.abs());
+        }
+    }
+    rest.iter().map(|x| x.abs()).chain(most).fold(0.0, larger)
 }
 
 #[cfg(test)]

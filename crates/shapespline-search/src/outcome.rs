@@ -8,7 +8,8 @@ use shapespline_geometry::DVec3;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum Status {
-    /// Every criterion holds, by a complete solve and check at the end.
+    /// No criterion is violated, by a complete solve and check at the end; what is undecided, tension did
+    /// not help.
     Solved,
     /// The caller's limit of iterations was reached first.
     IterationLimit,
@@ -68,6 +69,8 @@ pub struct Outcome {
     pub history: Vec<Step>,
     /// Segments that fail still, with their faults: empty when solved.
     pub faults: Vec<(usize, Faults)>,
+    /// Segments of which rounding hides whether they keep the shape: tension did not help.
+    pub undecided: Vec<usize>,
 }
 
 impl Outcome {
@@ -77,7 +80,7 @@ impl Outcome {
         let status = Status::Solved;
         let diagnostics =
             Diagnostics { status, iterations: 1, solves: 1, relaxations: 0, nodes_changed: 0 };
-        Self { diagnostics, history: Vec::new(), faults: Vec::new() }
+        Self { diagnostics, history: Vec::new(), faults: Vec::new(), undecided: Vec::new() }
     }
 }
 

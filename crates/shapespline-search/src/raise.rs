@@ -150,6 +150,7 @@ impl<F: TensionFamily> State<'_, F> {
         let (legs, start) = (&self.legs, around.start);
         self.faults.clear();
         self.windows.faults(around, |i| legs[i - start], &mut self.faults);
+        self.doubts.sift(&mut self.windows, &mut self.faults, |i| legs[i - start]);
         if let Some(&(segment, _)) = self.faults.first() {
             self.suspect = segment;
         }

@@ -55,10 +55,14 @@ where
     }
     let outcome = search_from(faults, family, windows, options, monitor)?;
     refill(&mut legs, |i| family.end_legs(i));
-    let report = if outcome.faults.is_empty() {
+    let open = outcome.faults.iter().map(|fault| fault.0).chain(outcome.undecided.iter().copied());
+    let mut open: Vec<usize> = open.collect();
+    open.sort_unstable();
+    open.dedup();
+    let report = if open.is_empty() {
         clean()
     } else {
-        options.checker(polygon)?.report_of(&outcome.faults, |i| legs[i])
+        options.checker(polygon)?.report_of(&open, |i| legs[i])
     };
     Ok(Found { legs, outcome, report })
 }
@@ -82,6 +86,7 @@ fn search_from<F: TensionFamily>(
     if status != Status::Solved && !state.untouched() {
         // Changes of a rounding or two were not looked at, and a verdict can hang on them.
         state.solve_and_check_anew()?;
+        state.accept_doubts();
         if state.faults.is_empty() {
             status = Status::Solved;
         }
@@ -90,6 +95,12 @@ fn search_from<F: TensionFamily>(
 }
 
 impl<F: TensionFamily> State<'_, F> {
+    /// Accepts what is undecided if that is all that is left.
+    fn accept_doubts(&mut self) {
+        let Self { family, windows, doubts, faults, .. } = self;
+        doubts.accept(windows, faults, |i| family.end_legs(i));
+    }
+
     /// Solves and checks everything anew, unless the curve as it is was solved as a whole and no segment of
     /// it failed; raises again in the (unseen) case that something fails.
     fn verify(&mut self, options: &SearchOptions) -> Result<Status, F::Error> {

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use shapespline_criteria::{Faults, WindowChecker};
 use shapespline_geometry::DVec3;
 
-use crate::{Diagnostics, Outcome, Phase, Status, Step, TensionFamily};
+use crate::{Diagnostics, Outcome, Phase, Status, Step, TensionFamily, doubts::Doubts};
 
 /// Touched neighbourhoods from which on they are checked on all threads.
 const MANY: usize = 256;
@@ -20,8 +20,9 @@ pub(crate) struct State<'s, F> {
     pub(crate) family: &'s mut F,
     pub(crate) windows: WindowChecker<'s>,
     monitor: &'s mut dyn FnMut(&Step) -> ControlFlow<()>,
-    /// Segments that fail, ascending.
+    /// Segments that fail, ascending: those not proved to keep the shape, without accepted doubts.
     pub(crate) faults: Vec<(usize, Faults)>,
+    pub(crate) doubts: Doubts,
     /// Ranges of segments that the last solve touched, ascending and disjoint.
     touched: Vec<Range<usize>>,
     /// What a trial that failed left unchecked.
@@ -50,15 +51,19 @@ impl<'s, F: TensionFamily> State<'s, F> {
     pub(crate) fn new(
         faults: Vec<(usize, Faults)>,
         family: &'s mut F,
-        windows: WindowChecker<'s>,
+        mut windows: WindowChecker<'s>,
         monitor: &'s mut dyn FnMut(&Step) -> ControlFlow<()>,
     ) -> Self {
-        let plain_fails = !faults.is_empty() && family.tension().iter().all(|&t| t == 0.0);
+        let is_plain = family.tension().iter().all(|&t| t == 0.0);
+        let fails =
+            |&(i, _): &(usize, Faults)| !windows.failures_at(i, family.end_legs(i)).is_empty();
+        let plain_fails = is_plain && faults.iter().any(fails);
         Self {
             family,
             windows,
             monitor,
             faults,
+            doubts: Doubts::default(),
             touched: Vec::with_capacity(16),
             unchecked: Vec::new(),
             verified: false,
@@ -95,6 +100,7 @@ impl<'s, F: TensionFamily> State<'s, F> {
         self.solves += 1;
         let family = &*self.family;
         self.faults = self.windows.all_faults(|i| family.end_legs(i));
+        self.doubts.sift(&mut self.windows, &mut self.faults, |i| family.end_legs(i));
         self.verified = self.faults.is_empty();
         Ok(())
     }
@@ -118,12 +124,14 @@ impl<'s, F: TensionFamily> State<'s, F> {
         let around = self.look(changes)?;
         let (legs, start) = (&self.legs, around.start);
         let suspect = self.suspect;
+        let (windows, doubts) = (&mut self.windows, &self.doubts);
         if around.contains(&suspect)
-            && !self.windows.faults_at(suspect, legs[suspect - start]).is_empty()
+            && !windows.faults_at(suspect, legs[suspect - start]).is_empty()
+            && doubts.is_fault(windows, suspect, legs[suspect - start])
         {
             return Some(true);
         }
-        let fault = self.windows.any_fault(around, |i| legs[i - start]);
+        let fault = first_fault(windows, doubts, around, |i| legs[i - start]);
         self.suspect = fault.unwrap_or(suspect);
         Some(fault.is_some())
     }
@@ -160,6 +168,7 @@ impl<'s, F: TensionFamily> State<'s, F> {
         if untouched > 0 {
             self.faults.sort_unstable_by_key(|f| f.0);
         }
+        self.doubts.sift(windows, &mut self.faults, legs);
         if let Some(&(segment, _)) = self.faults.first() {
             self.suspect = segment;
         }
@@ -171,14 +180,14 @@ impl<'s, F: TensionFamily> State<'s, F> {
     /// leaves it to the next solve to look at the rest.
     pub(crate) fn try_tension(&mut self, changes: &[(usize, f64)]) -> Result<bool, F::Error> {
         self.solve(changes)?;
-        let (family, windows) = (&*self.family, &mut self.windows);
+        let (family, windows, doubts) = (&*self.family, &mut self.windows, &self.doubts);
         let legs = |i| family.end_legs(i);
         let known = self.suspect;
         let suspect = self.touched.iter().any(|r| r.contains(&known)).then_some(known..known + 1);
         let fault = suspect
             .into_iter()
             .chain(self.touched.iter().cloned())
-            .find_map(|range| windows.any_fault(range, legs));
+            .find_map(|range| first_fault(windows, doubts, range, legs));
         if let Some(segment) = fault {
             self.suspect = segment;
             std::mem::swap(&mut self.unchecked, &mut self.touched);
@@ -232,8 +241,25 @@ impl<'s, F: TensionFamily> State<'s, F> {
             relaxations: self.relaxations,
             nodes_changed: self.family.tension().iter().filter(|&&t| t > 0.0).count(),
         };
-        Outcome { diagnostics, history: self.history, faults: self.faults }
+        let undecided = self.doubts.accepted();
+        Outcome { diagnostics, history: self.history, faults: self.faults, undecided }
     }
+}
+
+/// The first of some segments that is not proved to keep the shape and is no accepted doubt.
+fn first_fault(
+    windows: &mut WindowChecker<'_>,
+    doubts: &Doubts,
+    mut segments: Range<usize>,
+    legs: impl Fn(usize) -> [DVec3; 2],
+) -> Option<usize> {
+    while let Some(i) = windows.any_fault(segments.clone(), &legs) {
+        if doubts.is_fault(windows, i, legs(i)) {
+            return Some(i);
+        }
+        segments.start = i + 1;
+    }
+    None
 }
 
 /// Sorts ranges and joins those that meet.

@@ -1,6 +1,7 @@
 //! Data for the tests that need more than one crate.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "test code")]
 
+pub mod exact;
 pub mod families;
 pub mod fuzz;
 pub mod generate;

@@ -372,12 +372,14 @@ fn what_rounding_hides_is_undecided() {
     let curve = PiecewiseBezier::new(u, &control, 5, Dimension::Three).unwrap();
     let polygon =
         DataPolygon::new(points, &Parametrization::Uniform, Boundary::ZeroCurvature).unwrap();
-    let report = check_curve(&polygon, &curve, Criteria::ALL, Tolerances::default()).unwrap();
+    // Its pieces meet in corners.
+    let criteria = Criteria::ALL.without(Criterion::Turning);
+    let report = check_curve(&polygon, &curve, criteria, Tolerances::default()).unwrap();
     let open: Vec<_> = report.undecided.iter().map(|x| (x.segment, x.criterion)).collect();
     assert_eq!(open, [(1, Criterion::Torsion)]);
     let [from, to] = report.undecided[0].interval;
     assert!(from >= 1.0 && to <= 2.0);
-    assert!(!report.ok() && report.to_string().contains("undecided"), "{report}");
+    assert!(report.ok() && report.verdict() == "undecided", "{report}");
 }
 
 #[test]

@@ -109,7 +109,8 @@ fn margins_are_continuous_and_change_sign_with_the_verdict() {
             // A binormal that turns over where ω vanishes jumps; nothing else does.
             let jumps = criterion == Criterion::Coplanarity && (a.margin - b.margin).abs() > 1e-9;
             if !jumps {
-                assert!(a.margin.abs() < 1e-9 && b.margin.abs() < 1e-9, "{k}: {a:?} {b:?}");
+                // What is not proved begins a little above zero.
+                assert!(a.margin.abs() < 1e-8 && b.margin.abs() < 1e-8, "{k}: {a:?} {b:?}");
             }
             crossings[criterion as usize] += usize::from(!jumps);
         }

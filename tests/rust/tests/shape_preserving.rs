@@ -105,8 +105,19 @@ fn no_run_of_a_fairest_tension_can_be_lowered_by_one_percent() {
             let mut tension = fit.curve.tension().to_vec();
             tension[run.clone()].iter_mut().for_each(|t| *t *= 0.99);
             let lower = NuSpline::new(polygon.clone(), Tension::Nodes(&tension)).unwrap();
-            let report = lower.check(Criteria::OF_FITS, Tolerances::default()).unwrap();
-            assert!(!report.ok(), "run {run:?} of {:?} can be lowered", fit.curve.tension());
+            // Something is no longer proved; of what was left undecided, something no longer holds.
+            let checker = Checker::new(&polygon, Criteria::OF_FITS, Tolerances::default());
+            let (mut windows, legs) = (checker.in_windows(), lower.curve().legs());
+            let breaks = (0..legs.len()).any(|i| {
+                let accepted = fit.outcome.undecided.contains(&i);
+                let faults = if accepted {
+                    windows.failures_at(i, legs[i])
+                } else {
+                    windows.faults_at(i, legs[i])
+                };
+                !faults.is_empty()
+            });
+            assert!(breaks, "run {run:?} of {:?} can be lowered", fit.curve.tension());
             tested += 1;
         }
     }

@@ -4,9 +4,12 @@ use glam::DVec3;
 use rayon::prelude::*;
 use shapespline_geometry::{DataPolygon, InputError, PiecewiseBezier, length, polynomial::Sign};
 
-use super::{Question, Segment, corner::joined, decide, measure};
+use super::{Question, Segment, decide, measure};
 use crate::{
-    Checker, Criteria, Criterion, Notes, Record, ShapeReport, Tolerances, Undecided, notes::notes,
+    Checker, Criteria, Criterion, Faults, Notes, Record, ShapeReport, Tolerances, Undecided,
+    checker::Cubic,
+    notes::notes,
+    rounding::{Lean, UNIT},
 };
 
 /// How far from the points a curve may pass by default, over the extent of the points.
@@ -117,9 +120,7 @@ impl<'a> CurveChecker<'a> {
     #[must_use]
     pub fn report(&self) -> ShapeReport {
         if self.is_cubic() {
-            let faults = self.checker.all_faults(|i| self.end_legs(i));
-            let faults = joined(faults, self.corner_faults());
-            return self.checker.report_with(&faults, |i, criterion| self.record(i, criterion));
+            return self.report_on_cubics();
         }
         let of = |i: usize| (i, self.check_segment(i));
         let found: Vec<(usize, Found)> = (0..self.checker.calls().len())
@@ -143,8 +144,9 @@ impl<'a> CurveChecker<'a> {
     /// unsatisfied with margin zero, and [`CurveChecker::undecided`] has the interval.
     #[must_use]
     pub fn record(&self, segment: usize, criterion: Criterion) -> Record {
-        if let Some(legs) = self.legs(segment) {
-            return self.with_corners(self.checker.record(segment, legs, criterion));
+        if self.is_cubic() {
+            let record = self.checker.record_of(segment, &self.cubic(segment), criterion);
+            return self.with_corners(record);
         }
         let mut record = Record {
             segment,
@@ -174,8 +176,11 @@ impl<'a> CurveChecker<'a> {
     /// What stays open of a criterion on a segment.
     #[must_use]
     pub fn undecided(&self, segment: usize, criterion: Criterion) -> Option<Undecided> {
-        if self.legs(segment).is_some() {
-            return None;
+        if self.is_cubic() {
+            let (of, [open, violated]) = (Faults::of(criterion), self.cubic_verdict(segment));
+            let interval = self.checker.interval(segment, open.only(of));
+            let is_open = open.any(of) && !violated.any(of);
+            return is_open.then_some(Undecided { segment, criterion, interval });
         }
         let question = self.checker.question(segment, criterion)?;
         match self.verdict(segment, &self.segment(segment), &question) {
@@ -247,9 +252,39 @@ impl<'a> CurveChecker<'a> {
         [(p[1] - p[0]).truncate(), (p[3] - p[2]).truncate()]
     }
 
-    /// End legs, where a segment is one polynomial cubic.
-    fn legs(&self, i: usize) -> Option<[DVec3; 2]> {
-        self.is_cubic().then(|| self.end_legs(i))
+    /// A segment that is one polynomial cubic, between its own end points.
+    fn cubic(&self, i: usize) -> Cubic {
+        let p = self.curve.piece(i);
+        let far = p[0].abs().max(p[3].abs()).truncate().max_element();
+        Cubic { legs: self.end_legs(i), chord: (p[3] - p[0]).truncate(), far }
+    }
+
+    /// The report where each segment is one polynomial cubic. Many are judged at once by the chords of the
+    /// polygon; those that end off its points by more than rounding, one by one by their own.
+    fn report_on_cubics(&self) -> ShapeReport {
+        let points = self.checker.polygon().points();
+        let ends_off = |i: usize| {
+            let p = self.curve.piece(i);
+            let off = |end: usize, k: usize| (p[k].truncate() - points[end]).abs().max_element();
+            off(i, 0) + off(i + 1, 3) > 2.0 * UNIT * self.cubic(i).far
+        };
+        let faults = self.checker.all_faults(|i| self.end_legs(i));
+        let apart = (0..self.checker.calls().len()).filter(|&i| ends_off(i));
+        let apart =
+            apart.filter(|&i| !self.checker.judge(i, &self.cubic(i), Lean::Against).is_empty());
+        let own = faults.iter().map(|fault| fault.0).filter(|&i| !ends_off(i));
+        let corners = self.corner_faults().into_iter().map(|fault| fault.0);
+        let mut open: Vec<usize> = own.chain(apart).chain(corners).collect();
+        open.sort_unstable();
+        open.dedup();
+        let record = |i: usize, criterion| self.record(i, criterion);
+        self.checker.report_with(&open, |i| self.cubic_verdict(i), record)
+    }
+
+    /// What is not proved of a segment that is one polynomial cubic, and what is violated.
+    fn cubic_verdict(&self, i: usize) -> [Faults; 2] {
+        let (cubic, corners) = (self.cubic(i), self.corner_faults_of(i));
+        [Lean::Against, Lean::For].map(|lean| self.checker.judge(i, &cubic, lean).and(corners))
     }
 
     fn segment(&self, i: usize) -> Segment {

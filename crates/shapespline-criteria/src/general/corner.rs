@@ -17,19 +17,22 @@ impl CurveChecker<'_> {
     /// The faults of turning at corners, ascending by segment.
     pub(super) fn corner_faults(&self) -> Vec<(usize, Faults)> {
         let n = self.checker().calls().len();
-        let of = |i: usize| {
-            let at = |end: usize, fault: Faults| {
-                let fails = self.beyond_chord(i, end, self.end_tangent(i, end)).is_some();
-                if fails { fault } else { Faults::default() }
-            };
-            (i, at(0, Faults::TURNING_AT_START).and(at(1, Faults::TURNING_AT_END)))
-        };
+        let of = |i: usize| (i, self.corner_faults_of(i));
         let fails = |fault: &(usize, Faults)| !fault.1.is_empty();
         if n < 2 * BLOCK {
             (0..n).map(of).filter(fails).collect()
         } else {
             (0..n).into_par_iter().with_min_len(BLOCK).map(of).filter(fails).collect()
         }
+    }
+
+    /// Those of one segment.
+    pub(super) fn corner_faults_of(&self, i: usize) -> Faults {
+        let at = |end: usize, fault: Faults| {
+            let fails = self.beyond_chord(i, end, self.end_tangent(i, end)).is_some();
+            if fails { fault } else { Faults::default() }
+        };
+        at(0, Faults::TURNING_AT_START).and(at(1, Faults::TURNING_AT_END))
     }
 
     /// A record with what the corners at the ends of its segment add to it.
@@ -81,24 +84,4 @@ impl CurveChecker<'_> {
         let size = length(own) * normal.length();
         Some(if size > 0.0 { (product / size).clamp(-1.0, 0.0) } else { 0.0 })
     }
-}
-
-/// Two lists of faults, each ascending by segment, as one.
-pub(super) fn joined(
-    mut all: Vec<(usize, Faults)>,
-    more: Vec<(usize, Faults)>,
-) -> Vec<(usize, Faults)> {
-    if more.is_empty() {
-        return all;
-    }
-    all.extend(more);
-    all.sort_by_key(|fault| fault.0);
-    all.dedup_by(|next, kept| {
-        let same = next.0 == kept.0;
-        if same {
-            kept.1 = kept.1.and(next.1);
-        }
-        same
-    });
-    all
 }

@@ -89,11 +89,7 @@ impl ShapeReport {
 
     /// The verdict in a word.
     fn verdict(&self) -> &'static str {
-        match (self.report.ok(), self.report.violations.is_empty()) {
-            (true, _) => "preserved",
-            (false, true) => "undecided",
-            (false, false) => "violated",
-        }
+        self.report.verdict()
     }
 
     /// What the paper says of nodes and of oscillation.
@@ -125,7 +121,7 @@ impl ShapeReport {
         ))
     }
 
-    /// Whether every criterion that applies is satisfied, and none is left undecided.
+    /// Whether no criterion that applies is violated; what rounding hides is ``undecided``.
     #[getter]
     fn ok(&self) -> bool {
         self.report.ok()
@@ -160,9 +156,9 @@ impl ShapeReport {
 
     /// What could be neither proved nor refuted, ascending by segment: a list of `UndecidedRecord`.
     ///
-    /// Always empty for curves whose segments are single cubics, which are decided exactly. On curves
-    /// of other degrees a value that is zero to rounding can stay open; such a record is not counted
-    /// as violated, but the report is not ``ok``, and in ``segments`` its margin is 0.
+    /// A sign that is zero to rounding of the arithmetic, or of control points written with 15 significant
+    /// digits, can stay open; such a record is not counted as violated, and in ``segments`` it is not
+    /// satisfied and has margin 0.
     #[getter]
     fn undecided<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyAny>>> {
         let open = self.report.undecided.iter();

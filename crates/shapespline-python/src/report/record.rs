@@ -18,7 +18,7 @@ use crate::pickle::{self, Kind, Reduced};
 /// applicable : bool
 ///     Whether the data polygon calls for the criterion on this segment.
 /// satisfied : bool
-///     Whether the curve meets it, decided exactly; true where it does not apply.
+///     Whether the curve is proved to meet it; true where it does not apply.
 /// margin : float
 ///     Signed distance from failure, without unit, in [−1, 1]: positive exactly when satisfied; NaN
 ///     where the criterion does not apply.
