@@ -140,25 +140,27 @@ def test_violations_that_travel_inwards_need_no_limit_and_few_rounds():
         assert_shape(curve)
         assert curve.diagnostics.iterations < 60
         with pytest.raises(ss.ConvergenceError, match="raise max_iterations") as caught:
-            ss.NuSpline.shape_preserving(points, parameters, max_iterations=15)
+            ss.NuSpline.shape_preserving(points, parameters, max_iterations=1)
         diagnostics = caught.value.curve.diagnostics
-        assert (diagnostics.status, diagnostics.iterations) == ("iteration-limit", 15)
+        assert (diagnostics.status, diagnostics.iterations) == ("iteration-limit", 1)
 
 
 def test_where_tension_can_rise_no_further_the_search_ends():
-    """Parameters so uneven that no digits are left (limits.md)."""
+    """Parameters so uneven that no digits are left (limits.md): what rounding hides is reported."""
     points = np.random.default_rng(0).normal(size=(8, 3)).cumsum(axis=0)
     parameters = np.cumsum([0, 1, 1e9, 1, 1, 1, 1, 1])
-    for strategy, most, advice in [
-        ("fairest", 250, "widen coplanarity"),
-        ("nussp", 10_100, 'use strategy="fairest"'),
-    ]:
-        with pytest.raises(ss.ConvergenceError, match=advice) as caught:
-            ss.NuSpline.shape_preserving(points, parameters, strategy=strategy)
-        diagnostics = caught.value.curve.diagnostics
-        assert diagnostics.status == "stalled"
-        assert diagnostics.iterations <= most
-        assert not caught.value.report.ok
+    curve = ss.NuSpline.shape_preserving(points, parameters)
+    assert curve.diagnostics.status == "solved"
+    assert curve.diagnostics.iterations <= 250
+    report = curve.check()
+    assert report.ok
+    assert report.undecided
+    with pytest.raises(ss.ConvergenceError, match='use strategy="fairest"') as caught:
+        ss.NuSpline.shape_preserving(points, parameters, strategy="nussp")
+    diagnostics = caught.value.curve.diagnostics
+    assert diagnostics.status == "stalled"
+    assert diagnostics.iterations <= 10_100
+    assert not caught.value.report.ok
 
 
 def test_a_million_points():

@@ -63,7 +63,7 @@ impl Doubts {
         });
     }
 
-    /// Accepts all segments if none of them is violated, for a search that ends here.
+    /// Accepts all segments if none of them is violated, where tension can rise no further.
     pub(crate) fn accept(
         &mut self,
         windows: &mut WindowChecker<'_>,

@@ -86,7 +86,9 @@ fn search_from<F: TensionFamily>(
     if status != Status::Solved && !state.untouched() {
         // Changes of a rounding or two were not looked at, and a verdict can hang on them.
         state.solve_and_check_anew()?;
-        state.accept_doubts();
+        if status == Status::Stalled {
+            state.accept_doubts();
+        }
         if state.faults.is_empty() {
             status = Status::Solved;
         }
