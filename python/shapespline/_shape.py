@@ -254,7 +254,7 @@ def fairness(curve: Any) -> Fairness:
     >>> import shapespline as ss
     >>> parabola = ss.PiecewiseBezier([[[-1, 1], [0, -1], [1, 1]]], [0, 1])
     >>> found = ss.fairness(parabola)
-    >>> found.max_curvature, found.max_curvature_at, found.curvature_extrema
+    >>> round(found.max_curvature, 12), round(found.max_curvature_at, 12), found.curvature_extrema
     (2.0, 0.5, 1)
     """
     measured = curve if isinstance(curve, SpaceCurve) else piecewise(curve)

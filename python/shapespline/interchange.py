@@ -11,11 +11,11 @@ this module, a SciPy ``BSpline``, ``PPoly`` or ``BPoly``, or a `PiecewiseBezier`
 
 from __future__ import annotations
 
+import html
 import json
 import math
 from numbers import Real
 from typing import TYPE_CHECKING, Any, NamedTuple
-from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
@@ -291,7 +291,7 @@ def svg(curve: Any, *, stroke: str = "#1f5fa8", width: float | None = None) -> s
     return (
         f'<svg xmlns="http://www.w3.org/2000/svg" '
         f'viewBox="{left!r} {-bottom - up!r} {across!r} {up!r}">\n'
-        f'<path transform="scale(1,-1)" fill="none" stroke={quoteattr(stroke)} '
+        f'<path transform="scale(1,-1)" fill="none" stroke="{html.escape(stroke)}" '
         f'stroke-width="{width!r}" stroke-linejoin="round" d="{svg_path(curve)}"/>\n</svg>\n'
     )
 

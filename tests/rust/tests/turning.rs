@@ -60,7 +60,7 @@ impl Shape {
 /// A polygon of every shape, dimension, boundary and parametrisation in turn.
 fn polygon(case: usize, random: &mut Random) -> Option<DataPolygon> {
     let shape = [Shape::Runs, Shape::Lattice, Shape::FewDirections][case % 3];
-    let planar = case / 3 % 2 == 0;
+    let planar = (case / 3).is_multiple_of(2);
     let mut points = vec![DVec3::ZERO];
     for step in shape.steps(3 + random.below(10), planar, random) {
         points.push(points[points.len() - 1] + step);
