@@ -104,9 +104,9 @@ where
 ///     Data of any shape with n entries along ``axis``; every column is fitted, in parallel.
 /// axis : int
 ///     The axis of y that goes with x.
-/// slopes : {"fritsch-butland"} or array_like, in the shape of y or (n,)
-///     Slopes at the knots: Fritsch and Butland's harmonic means, or given ones (of shape (n,) for every
-///     column), which are limited to 0 ≤ d ≤ 2Δ with Δ the smaller neighbouring secant slope.
+/// slopes : {"fritsch-butland"} or array_like
+///     Slopes at the knots: Fritsch and Butland's harmonic means, or given ones (in the shape of ``y``, or
+///     (n,) for every column), which are limited to 0 ≤ d ≤ 2Δ with Δ the smaller neighbouring secant slope.
 /// shape : float or pair of array_like, shape (n - 1,)
 ///     Starting value of α = β, or (α, β) of every segment; from 0 to 1e300. They are scaled by the
 ///     largest λ in [0, 1] that keeps the segment monotone. With 1 cubics with exact slopes are
@@ -185,10 +185,10 @@ impl MonotoneQuartic {
 ///     Data of any shape with n entries along ``axis``; every column is fitted, in parallel.
 /// axis : int
 ///     The axis of y that goes with x.
-/// slopes : {"optimal", "fritsch-butland"} or array_like, in the shape of y or (n,)
+/// slopes : {"optimal", "fritsch-butland"} or array_like
 ///     Slopes at the knots: chosen together with the second derivatives; Fritsch and Butland's
-///     harmonic means (the paper's); or given ones (of shape (n,) for every column), limited to what
-///     a monotone quintic allows.
+///     harmonic means (the paper's); or given ones (in the shape of ``y``, or (n,) for every column),
+///     limited to what a monotone quintic allows.
 /// fairness : {"bending", "parametric"}
 ///     What is least: ``∫ f''² dx``, or the paper's sum (20) over the segments' own parameters.
 /// extrapolate : {"linear", "clip", "periodic", True, False} or pair of them

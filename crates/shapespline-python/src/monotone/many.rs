@@ -110,9 +110,9 @@ fn shape(object: &Bound<'_, PyAny>) -> PyResult<Option<Shape>> {
 ///     `MonotoneQuintic` or `MonotoneQuartic`.
 /// offsets : array_like of int, shape (rows + 1,), optional
 ///     Row k is ``x[offsets[k]:offsets[k + 1]]``, and so for y.
-/// slopes : {"optimal", "fritsch-butland"} or array_like, in the shape of y, optional
-///     As for the kind; None is its own default. Where x and y have two axes, slopes of shape (n,) are
-///     for every row.
+/// slopes : {"optimal", "fritsch-butland"} or array_like, optional
+///     As for the kind, with one slope per entry of ``y``; None is its own default. Where x and y have
+///     two axes, slopes of shape (n,) are for every row.
 /// fairness : {"bending", "parametric"}, optional
 ///     For the quintic alone; None is "bending".
 /// shape : float or pair of array_like, optional
