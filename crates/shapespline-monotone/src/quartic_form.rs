@@ -59,7 +59,7 @@ pub(crate) fn minima(c: &[f64; 5]) -> [Option<Minimum>; 2] {
                 hi = t;
             }
             let next = t - f / slope(t);
-            let next = if next > lo && next < hi { next } else { 0.5 * (lo + hi) };
+            let next = if next >= lo && next <= hi { next } else { 0.5 * (lo + hi) };
             let done = (next - t).abs() <= 1e-9 * next.min(1.0 - next) || hi - lo <= 1e-15;
             t = next;
             if done {
@@ -120,9 +120,19 @@ pub(crate) fn least(c: &[f64; 5]) -> f64 {
 }
 
 /// Whether `p + tolerance ≥ 0` on all of [0, 1], decided on Bernstein coefficients: a part whose coefficients are
-/// all non-negative is done, an end value below zero refutes, anything else is halved. A polynomial that is
-/// neither certified nor refuted at the resolution of double precision counts as not certified.
+/// all non-negative is done, an end value below zero refutes, anything else is cut, first at the minima (between them
+/// coefficients that touch zero show it at once), then in halves. A polynomial that is neither certified nor refuted at
+/// the resolution of double precision counts as not certified.
 pub(crate) fn certified_nonnegative(c: &[f64; 5], tolerance: f64) -> bool {
+    let c = c.map(|v| v + tolerance);
+    if c.iter().all(|v| *v >= 0.0) {
+        return true;
+    }
+    certified_between(c, minima(&c).iter().flatten().map(|m| m.t))
+}
+
+/// [`certified_nonnegative`], cut at the given places (increasing, in (0, 1)) first.
+pub(crate) fn certified_between(c: [f64; 5], places: impl Iterator<Item = f64>) -> bool {
     fn part(c: [f64; 5], depth: u32) -> bool {
         if c.iter().all(|v| *v >= 0.0) {
             return true;
@@ -131,17 +141,33 @@ pub(crate) fn certified_nonnegative(c: &[f64; 5], tolerance: f64) -> bool {
         if !(c[0] >= 0.0 && c[4] >= 0.0) || depth == 0 {
             return false;
         }
-        let mut left = [0.0; 5];
-        let mut rest = c;
-        for k in 0..5 {
-            left[k] = rest[0];
-            for j in 0..4 - k {
-                rest[j] = 0.5 * (rest[j] + rest[j + 1]);
-            }
-        }
-        part(left, depth - 1) && part(rest, depth - 1)
+        let (left, right) = cut(c, 0.5);
+        part(left, depth - 1) && part(right, depth - 1)
     }
-    part(c.map(|v| v + tolerance), 50)
+    const DEPTH: u32 = 50;
+    let (mut rest, mut from) = (c, 0.0);
+    for t in places {
+        let (left, right) = cut(rest, (t - from) / (1.0 - from));
+        if !part(left, DEPTH) {
+            return false;
+        }
+        (rest, from) = (right, t);
+    }
+    part(rest, DEPTH)
+}
+
+/// The coefficients on both sides of t, by de Casteljau's scheme.
+#[inline]
+pub(crate) fn cut(mut c: [f64; 5], t: f64) -> ([f64; 5], [f64; 5]) {
+    let u = 1.0 - t;
+    let mut left = [0.0; 5];
+    for k in 0..5 {
+        left[k] = c[0];
+        for j in 0..4 - k {
+            c[j] = u * c[j] + t * c[j + 1];
+        }
+    }
+    (left, c)
 }
 
 /// Bernstein coefficients of the derivative of a quintic segment over Δ:
