@@ -55,6 +55,9 @@ const MAX_STEPS: usize = 40;
 const READY: f64 = 3e-2;
 /// Gap (the total relative to E, and a segment's in its unit) at which the search ends.
 const EXACT: f64 = 1e-7;
+/// The same at which it ends where Newton's method on the contacts has: what is left is the way back to feasible
+/// points where contacts meet.
+const SOLVED: f64 = 1e-4;
 /// The same from which the result counts as found.
 const PROMISE: f64 = 5e-3;
 /// Step lengths (dual and primal together) from which on the iteration does not move any more.
@@ -191,23 +194,27 @@ fn run(
     }
     problem.start(MASS);
     let mut found = Optimum { gap: f64::INFINITY, ..result(&problem.inside, data) };
-    let mut steps = 1;
+    let (mut steps, mut polished) = (1, false);
     loop {
         steps += 1;
         let length = problem.step();
         let last = steps == MAX_STEPS || !(length[0] + length[1] > STUCK);
         if last || problem.mean() <= READY {
             problem.kept.clone_from(&problem.w);
-            if problem.polish() {
-                problem.measure();
-                keep_better(&mut found, problem, data, true);
+            for further in [false, true] {
+                if !(found.gap <= EXACT) && problem.polish(further) {
+                    problem.measure();
+                    polished = keep_better(&mut found, problem, data, true);
+                } else {
+                    break;
+                }
             }
-            if !(found.gap <= EXACT) {
+            if !(found.gap <= SOLVED) {
                 problem.w.clone_from(&problem.kept);
-                keep_better(&mut found, problem, data, false);
+                polished &= !keep_better(&mut found, problem, data, false);
             }
         }
-        if last || found.gap <= EXACT {
+        if last || found.gap <= if polished { SOLVED } else { EXACT } {
             break;
         }
     }
@@ -216,35 +223,40 @@ fn run(
 }
 
 /// Take the current point, made feasible, if it is proved to be closer to the optimum than `found`. With the moments
-/// of the contacts if `polished`, else of the iteration.
-fn keep_better(found: &mut Optimum, problem: &mut Problem, data: &Data, polished: bool) {
+/// of the contacts if `polished`, else of the iteration. Whether it was taken.
+fn keep_better(found: &mut Optimum, problem: &mut Problem, data: &Data, polished: bool) -> bool {
     if !problem.feasible(data, polished) {
-        return;
+        return false;
     }
     let (energy, distance, worst) = problem.certificate(polished);
     let gap = worst.max(distance / energy);
-    if gap < found.gap {
-        let active = if polished { problem.held() } else { problem.active() };
-        *found = Optimum { gap, active, certified: true, ..result(&problem.best, data) };
+    if !(gap < found.gap) {
+        return false;
     }
+    let active = if polished { problem.held() } else { problem.active() };
+    *found = Optimum { gap, active, certified: true, ..result(&problem.best, data) };
+    true
 }
 
-/// Whether the derivative is non-negative on every segment, by its coefficients, which are cut first where the contacts
-/// are.
-fn certified(data: &Data, v: &[[f64; 2]], contacts: &[Contact]) -> bool {
+/// `report` the segments on which the derivative is not shown to be non-negative by its coefficients, which are cut
+/// first where the contacts are.
+fn uncertified(data: &Data, v: &[[f64; 2]], contacts: &[Contact], mut report: impl FnMut(usize)) {
     let mut rest = contacts;
-    (0..data.len()).all(|i| {
+    for i in 0..data.len() {
         let (h, delta) = (data.h[i], data.delta[i]);
         let (own, others) = rest.split_at(rest.iter().take_while(|c| c.segment <= i).count());
         rest = others;
         if is_flat(delta) {
-            return true;
+            continue;
         }
         let c = coefficients(h, delta, v[i], v[i + 1]);
-        let certified =
-            c.iter().all(|c| *c >= 0.0) || (!own.is_empty() && certified_between(c, places(own)));
-        certified || certified_nonnegative(&c, 0.0)
-    })
+        let certified = c.iter().all(|c| *c >= 0.0)
+            || (!own.is_empty() && certified_between(c, places(own)))
+            || certified_nonnegative(&c, 0.0);
+        if !certified {
+            report(i);
+        }
+    }
 }
 
 #[cfg(test)]

@@ -16,62 +16,36 @@ const NEAR: f64 = 0.1;
 /// A multiplier this many times the value, both in their natural units, makes a contact at the start.
 const HELD: f64 = 10.0;
 
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Place {
-    /// At this t.
-    Inside(f64),
-    /// At an end: the coefficient of tᵏ(1−t)⁴⁻ᵏ, those further out being fixed at 0.
-    End(usize),
+/// How many of p's coefficients vanish at either end: p is tᵃ(1−t)ᵇ times the quartic, cubic, … q that is asked to be
+/// non-negative.
+pub(super) type Order = [usize; 2];
+
+/// "q at t" as a functional on p's coefficients of tᵏ(1−t)⁴⁻ᵏ, and its derivative along t. The former are the moments
+/// of a unit multiplier.
+#[inline]
+fn functional(t: f64, [a, b]: Order) -> ([f64; 5], [f64; 5]) {
+    let powers = |t: f64| [0.0, 1.0, t, t * t, t * t * t, (t * t) * (t * t)];
+    let (l, r) = (powers(t), powers(1.0 - t));
+    let (mut value, mut drift) = ([0.0; 5], [0.0; 5]);
+    for k in a..=4 - b {
+        // Powers are kept one place further right.
+        let (i, j) = (k - a, 4 - b - k);
+        value[k] = l[i + 1] * r[j + 1];
+        drift[k] = i as f64 * (l[i] * r[j + 1]) - j as f64 * (l[i + 1] * r[j]);
+    }
+    (value, drift)
 }
 
-impl Place {
-    /// The functional "value at the place" on the coefficients of tᵏ(1−t)⁴⁻ᵏ: the moments of a unit multiplier.
-    pub(super) fn moments(self) -> [f64; 5] {
-        match self {
-            Self::Inside(t) => {
-                let u = 1.0 - t;
-                let (uu, ut, tt) = (u * u, u * t, t * t);
-                [uu * uu, uu * ut, ut * ut, ut * tt, tt * tt]
-            }
-            Self::End(k) => std::array::from_fn(|j| f64::from(u8::from(j == k))),
-        }
-    }
-
-    /// The derivative of [`Place::moments`] along t.
-    fn drift(self) -> [f64; 5] {
-        match self {
-            Self::Inside(t) => {
-                let u = 1.0 - t;
-                [
-                    -4.0 * (u * u * u),
-                    u * u * (u - 3.0 * t),
-                    2.0 * (u * t) * (u - t),
-                    t * t * (3.0 * u - t),
-                    4.0 * (t * t * t),
-                ]
-            }
-            Self::End(_) => [0.0; 5],
-        }
-    }
-
-    fn distance(self, other: Self) -> f64 {
-        match (self, other) {
-            (Self::Inside(s), Self::Inside(t)) => (s - t).abs(),
-            _ if self == other => 0.0,
-            _ => f64::INFINITY,
-        }
-    }
-}
-
-/// A condition p ≥ 0 at a place of a segment, p the derivative over the secant.
+/// A condition q ≥ 0 at a place of a segment, q the derivative over the secant without its zeros at the ends.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Contact {
     pub(super) segment: usize,
-    pub(super) place: Place,
-    /// p there at the current point less [`MARGIN`], and its gradient in the segment's unknowns.
+    pub(super) t: f64,
+    order: Order,
+    /// q there at the current point less [`MARGIN`], and its gradient in the segment's unknowns.
     pub(super) value: f64,
     pub(super) row: [f64; 4],
-    /// The gradient of p's slope there and 1/p'' (0 where the place stays): how the place moves.
+    /// The gradient of q's slope there and 1/q'' (0 where the place stays): how the place moves.
     pub(super) drift: [f64; 4],
     pub(super) flexibility: f64,
     pub(super) stiffness: f64,
@@ -82,21 +56,17 @@ pub(super) struct Contact {
     pub(super) held: bool,
 }
 
-/// The gradient of a functional on the coefficients of tᵏ(1−t)⁴⁻ᵏ.
-#[inline]
-fn gradient(m: [f64; 5]) -> [f64; 4] {
-    cone::force(cone::reduced(&m))
-}
-
 impl Contact {
-    fn new(segment: usize, place: Place, value: f64, curvature: f64) -> Self {
-        let moving = curvature < f64::INFINITY;
+    fn new(segment: usize, t: f64, order: Order, value: f64, curvature: f64) -> Self {
+        let (moments, drift) = functional(t, order);
+        let gradient = |m: [f64; 5]| cone::force(cone::reduced(&m));
         Self {
             segment,
-            place,
+            t,
+            order,
             value: value - MARGIN,
-            row: gradient(place.moments()),
-            drift: if moving { gradient(place.drift()) } else { [0.0; 4] },
+            row: gradient(moments),
+            drift: gradient(drift),
             flexibility: 1.0 / curvature,
             stiffness: 0.0,
             multiplier: 0.0,
@@ -105,47 +75,51 @@ impl Contact {
         }
     }
 
-    /// Follow the minimum of p to where it has moved. Whether it is still there, nearby.
+    /// The moments of a unit multiplier.
+    pub(super) fn moments(&self) -> [f64; 5] {
+        functional(self.t, self.order).0
+    }
+
+    fn is_inside(&self) -> bool {
+        self.t > 0.0 && self.t < 1.0
+    }
+
+    /// Follow the minimum of q to where it has moved. Whether it is still there, nearby.
     #[inline]
-    fn follow(&mut self, p: &[f64; 5]) -> bool {
+    fn follow(&mut self, q: &[f64; 5]) -> bool {
         /// Newton steps: from a distance of a tenth to rounding, and a distance that is as good as none.
         const STEPS: usize = 5;
         const RESOLUTION: f64 = 1e-8;
-        match self.place {
-            Place::End(k) => self.value = BINOMIAL[k] * p[k] - MARGIN,
-            Place::Inside(from) => {
-                let mut t = from;
-                let mut curvature = 0.0;
-                for _ in 0..STEPS {
-                    let slope;
-                    [slope, curvature] = derivatives(p, t);
-                    let moved = slope / curvature;
-                    if moved.abs() < RESOLUTION {
-                        break;
-                    }
-                    t -= moved;
-                    // NaN ends here too.
-                    if !(curvature > 0.0 && (t - from).abs() < NEAR && t > 0.0 && t < 1.0) {
-                        return false;
-                    }
+        let (mut t, mut curvature) = (self.t, f64::INFINITY);
+        if self.is_inside() {
+            for _ in 0..STEPS {
+                let slope;
+                [slope, curvature] = derivatives(q, t);
+                let moved = slope / curvature;
+                if moved.abs() < RESOLUTION {
+                    break;
                 }
-                if t == from {
-                    self.flexibility = 1.0 / curvature;
-                    self.value = dot(p, &basis(t)) - MARGIN;
-                } else {
-                    let new =
-                        Self::new(self.segment, Place::Inside(t), dot(p, &basis(t)), curvature);
-                    let Self { stiffness, multiplier, .. } = *self;
-                    *self = Self { stiffness, multiplier, ..new };
+                t -= moved;
+                // NaN ends here too.
+                if !(curvature > 0.0 && (t - self.t).abs() < NEAR && t > 0.0 && t < 1.0) {
+                    return false;
                 }
             }
+        }
+        let value = dot(q, &basis(t));
+        if t == self.t {
+            (self.flexibility, self.value) = (1.0 / curvature, value - MARGIN);
+        } else {
+            let Self { stiffness, multiplier, .. } = *self;
+            let new = Self::new(self.segment, t, self.order, value, curvature);
+            *self = Self { stiffness, multiplier, ..new };
         }
         self.held = self.multiplier > 0.0 || self.value < 0.0;
         true
     }
 }
 
-/// p' and p'' at t.
+/// q' and q'' at t.
 #[inline]
 fn derivatives(c: &[f64; 5], t: f64) -> [f64; 2] {
     let u = 1.0 - t;
@@ -156,7 +130,19 @@ fn derivatives(c: &[f64; 5], t: f64) -> [f64; 2] {
     [4.0 * (u * left + t * right), 12.0 * (right - left)]
 }
 
-const BINOMIAL: [f64; 5] = [1.0, 4.0, 6.0, 4.0, 1.0];
+/// The Bernstein coefficients, of degree four, of q from those of p.
+fn without_zeros(p: &[f64; 5], [a, b]: Order) -> [f64; 5] {
+    const BINOMIAL: [f64; 5] = [1.0, 4.0, 6.0, 4.0, 1.0];
+    let mut q: [f64; 5] =
+        std::array::from_fn(|k| if k + a + b > 4 { 0.0 } else { BINOMIAL[k + a] * p[k + a] });
+    // Times t + (1−t) for every zero.
+    for _ in 0..a + b {
+        for k in (1..5).rev() {
+            q[k] += q[k - 1];
+        }
+    }
+    std::array::from_fn(|k| q[k] / BINOMIAL[k])
+}
 
 impl Problem {
     /// A segment's unknowns without dimension.
@@ -171,9 +157,9 @@ impl Problem {
     pub(super) fn find_contacts(&mut self) {
         let mut contacts = std::mem::take(&mut self.contacts);
         contacts.clear();
-        self.each_quartic(|i, p| {
+        self.each_quartic(|i, q| {
             let start = contacts.len();
-            let inside = self.candidates(i, p, &mut contacts);
+            let inside = self.candidates(i, q, &mut contacts);
             let (state, l) = (&self.states[i / W], i % W);
             let y: [f64; 5] = std::array::from_fn(|k| state.y[k][l]);
             distribute(&y, &mut contacts[start..], inside);
@@ -193,7 +179,7 @@ impl Problem {
         let mut contacts = std::mem::take(&mut self.previous);
         contacts.clear();
         let mut from = 0;
-        self.each_quartic(|i, p| {
+        self.each_quartic(|i, q| {
             while from < old.len() && old[from].segment < i {
                 from += 1;
             }
@@ -202,20 +188,20 @@ impl Problem {
             let past = old[from..].iter().take_while(|c| c.segment == i);
             for contact in past.clone() {
                 let mut contact = *contact;
-                lost |= !contact.follow(p);
+                lost |= !contact.follow(q);
                 contacts.push(contact);
             }
             let here = &contacts[start..];
             // Where nothing is held the last word is the certificate's.
-            let known = here.iter().all(|c| !c.held) || covers(here, p);
+            let known = here.iter().all(|c| !c.held) || covers(here, q);
             if !here.is_empty() && !lost && known {
                 return;
             }
             contacts.truncate(start);
-            self.candidates(i, p, &mut contacts);
+            self.candidates(i, q, &mut contacts);
             let found = contacts.len();
             for past in past.filter(|c| c.held) {
-                inherit(past, p, &mut contacts, start..found);
+                inherit(past, q, &mut contacts, start..found);
             }
             for contact in &mut contacts[start..] {
                 contact.held |= contact.value < 0.0;
@@ -224,7 +210,7 @@ impl Problem {
         (self.contacts, self.previous) = (contacts, old);
     }
 
-    /// `visit` the segments at which something is free, in order, with the Bernstein coefficients of p at the current
+    /// `visit` the segments at which something is free, in order, with the Bernstein coefficients of q at the current
     /// point.
     #[inline]
     fn each_quartic(&self, mut visit: impl FnMut(usize, &[f64; 5])) {
@@ -237,34 +223,44 @@ impl Problem {
                 (p[0][l], p[1][l], p[2][l], p[3][l], p[4][l]) = (c0, c1, c2, c3, c4);
             }
             for l in (0..W).filter(|&l| given.idle[l] == 0.0) {
-                visit(j * W + l, &std::array::from_fn(|k| p[k][l]));
+                let (i, p) = (j * W + l, std::array::from_fn(|k| p[k][l]));
+                match self.order(i) {
+                    [0, 0] => visit(i, &p),
+                    order => visit(i, &without_zeros(&p, order)),
+                }
             }
         }
     }
 
-    /// Append what could be a contact of segment i: the minima of p, and its ends where no neighbour goes on with it.
-    /// The number of the former.
-    fn candidates(&self, i: usize, p: &[f64; 5], contacts: &mut Vec<Contact>) -> usize {
-        let start = contacts.len();
-        if p[1].min(p[2]).min(p[3]) < 0.0 {
-            for m in minima(p).iter().flatten() {
-                self.append(Contact::new(i, Place::Inside(m.t), m.value, m.curvature), contacts);
-            }
-        }
-        let inside = contacts.len() - start;
-        if self.all_free && i > 0 && i + 1 < self.n {
-            return inside;
+    /// How many coefficients are fixed at 0 at the ends of a segment.
+    #[inline]
+    fn order(&self, i: usize) -> Order {
+        if self.all_free {
+            return [0, 0];
         }
         let (given, l) = (&self.given[i / W], i % W);
         let vanishes = |k: usize| usize::from(given.fixed[k][l] != 0.0);
-        let (left, right) = (vanishes(0) + vanishes(1), 4 - vanishes(2) - vanishes(3));
-        // Inside the data a contact at a node is one in the segment on either side of it.
-        for (k, last) in [(left, i == 0), (right, i + 1 == self.n)] {
-            let again = k == right && contacts.last().is_some_and(|c| c.place == Place::End(k));
-            if (last || (k > 0 && k < 4)) && !again {
-                let end = Contact::new(i, Place::End(k), BINOMIAL[k] * p[k], f64::INFINITY);
-                self.append(end, contacts);
+        [vanishes(0) + vanishes(1), vanishes(2) + vanishes(3)]
+    }
+
+    /// Append what could be a contact of segment i: the minima of q, and its ends where no neighbour goes on with it.
+    /// The number of the former.
+    fn candidates(&self, i: usize, q: &[f64; 5], contacts: &mut Vec<Contact>) -> usize {
+        let (start, order) = (contacts.len(), self.order(i));
+        if q[1].min(q[2]).min(q[3]) < 0.0 {
+            for m in minima(q).iter().flatten() {
+                self.append(Contact::new(i, m.t, order, m.value, m.curvature), contacts);
             }
+        }
+        let inside = contacts.len() - start;
+        // Inside the data a contact at a node is one in the segment on either side of it, and at a turn the same
+        // condition on both sides.
+        let turns = order[0] == 1 && i > 0 && self.given[(i - 1) / W].idle[(i - 1) % W] == 0.0;
+        if i == 0 || (order[0] > 0 && !turns) {
+            self.append(Contact::new(i, 0.0, order, q[0], f64::INFINITY), contacts);
+        }
+        if i + 1 == self.n || order[1] > 0 {
+            self.append(Contact::new(i, 1.0, order, q[4], f64::INFINITY), contacts);
         }
         inside
     }
@@ -308,20 +304,25 @@ impl Problem {
 
 /// Give the moments y of a segment to the places found in it, of which the first `inside` are not at the ends.
 fn distribute(y: &[f64; 5], found: &mut [Contact], inside: usize) {
-    // The inner moments are those of the inner places alone.
-    if inside == 1 {
-        let m = found[0].place.moments();
-        found[0].multiplier = (y[1] + y[2] + y[3]) / (m[1] + m[2] + m[3]);
-    } else if inside == 2 {
-        let (p, q) = (found[0].place.moments(), found[1].place.moments());
-        let d = 1.0 / (p[1] * q[3] - p[3] * q[1]);
-        found[0].multiplier = d * (y[1] * q[3] - y[3] * q[1]);
-        found[1].multiplier = d * (p[1] * y[3] - p[3] * y[1]);
-    }
     let (inner, ends) = found.split_at_mut(inside);
+    match inner {
+        [one] => {
+            // The inner moments are those of the inner places alone.
+            let m = one.moments();
+            let own = one.order[0] + 1..4 - one.order[1];
+            one.multiplier = y[own.clone()].iter().sum::<f64>() / m[own].iter().sum::<f64>();
+        }
+        [first, second] => {
+            let (p, q) = (first.moments(), second.moments());
+            let d = 1.0 / (p[1] * q[3] - p[3] * q[1]);
+            first.multiplier = d * (y[1] * q[3] - y[3] * q[1]);
+            second.multiplier = d * (p[1] * y[3] - p[3] * y[1]);
+        }
+        _ => {}
+    }
     for end in ends {
-        let Place::End(k) = end.place else { continue };
-        let share = |c: &Contact| c.multiplier * c.place.moments()[k];
+        let k = if end.t == 0.0 { end.order[0] } else { 4 - end.order[1] };
+        let share = |c: &Contact| c.multiplier * c.moments()[k];
         end.multiplier = y[k] - inner.iter().map(share).sum::<f64>();
     }
 }
@@ -329,20 +330,18 @@ fn distribute(y: &[f64; 5], found: &mut [Contact], inside: usize) {
 /// The places inside of a segment's contacts, in order.
 pub(super) fn places(contacts: &[Contact]) -> impl Iterator<Item = f64> {
     let mut last = 0.0;
-    contacts.iter().filter_map(move |c| match c.place {
-        Place::Inside(t) if t > last => {
-            last = t;
-            Some(t)
-        }
-        _ => None,
+    contacts.iter().filter(|c| c.is_inside()).filter_map(move |c| {
+        let next = c.t > last;
+        last = c.t.max(last);
+        next.then_some(c.t)
     })
 }
 
-/// Whether p is nowhere less than at the contacts of its segment: by its coefficients between them.
-fn covers(contacts: &[Contact], p: &[f64; 5]) -> bool {
+/// Whether q is nowhere less than at the contacts of its segment: by its coefficients between them.
+fn covers(contacts: &[Contact], q: &[f64; 5]) -> bool {
     let least = contacts.iter().fold(0.0f64, |least, c| least.min(c.value));
     let least = least - 1e-9 * (least.abs() + 1e-3);
-    let (mut rest, mut from) = (*p, 0.0);
+    let (mut rest, mut from) = (*q, 0.0);
     let above = |c: &[f64; 5]| c.iter().fold(true, |all, c| all & (*c >= least));
     for t in places(contacts) {
         let (left, right) = cut(rest, (t - from) / (1.0 - from));
@@ -355,21 +354,21 @@ fn covers(contacts: &[Contact], p: &[f64; 5]) -> bool {
 }
 
 /// Let a contact of the round before go on: in the candidate nearest to it, or as it is.
-fn inherit(past: &Contact, p: &[f64; 5], contacts: &mut Vec<Contact>, candidates: Range<usize>) {
-    let distance = |c: &Contact| c.place.distance(past.place);
-    let nearest =
-        contacts[candidates].iter_mut().min_by(|a, b| distance(a).total_cmp(&distance(b)));
-    match (nearest, past.place) {
-        (Some(next), _) if distance(next) < NEAR => {
+fn inherit(past: &Contact, q: &[f64; 5], contacts: &mut Vec<Contact>, candidates: Range<usize>) {
+    let distance = |c: &Contact| {
+        if c.is_inside() == past.is_inside() { (c.t - past.t).abs() } else { f64::INFINITY }
+    };
+    let nearest = contacts[candidates].iter_mut().min_by(|a, b| distance(a).total_cmp(&distance(b)));
+    match nearest {
+        Some(next) if distance(next) < NEAR => {
             next.stiffness = next.stiffness.max(past.stiffness);
             next.multiplier += past.multiplier;
             next.held = true;
         }
-        // A place that has no minimum any more still is one where p must not be negative.
-        (_, Place::Inside(t)) => {
-            let value = dot(p, &basis(t)) - MARGIN;
-            contacts.push(Contact { value, flexibility: 0.0, drift: [0.0; 4], ..*past });
+        // A place that has no minimum any more still is one where q must not be negative.
+        _ => {
+            let value = dot(q, &basis(past.t)) - MARGIN;
+            contacts.push(Contact { value, flexibility: 0.0, ..*past });
         }
-        _ => {}
     }
 }

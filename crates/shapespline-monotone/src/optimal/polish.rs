@@ -12,30 +12,41 @@
 use super::cone::{self, W};
 use super::step::Problem;
 
-/// Rounds after which the attempt counts as failed: nearly all that come to an end do so before, and more in vain cost
-/// as much as the step of the iteration that is needed then.
+/// Rounds after which the attempt counts as failed unless one in [`PATIENCE`] still gains by this factor: nearly all
+/// that come to an end do so before, and more in vain cost as much as the step of the iteration that is needed then.
 const ROUNDS: usize = 12;
+const PATIENCE: usize = 3;
+const GAINING: f64 = 0.8;
+const MAX_ROUNDS: usize = 40;
 /// Rounds in which it may be decided anew what is held.
 const DECISIONS: usize = 5;
 /// Change of p, the secant being 1, that shows that the contacts are not the right ones.
 const WILD: f64 = 10.0;
 /// Change of p from which on the error, which is about its square, is no more than rounding.
 const STILL: f64 = 3e-5;
+/// The same where that was not enough.
+const FURTHER: f64 = 1e-8;
 /// The same after all rounds: contacts that are about to merge are approached slowly, and have little energy.
 const NEARLY: f64 = 1e-3;
 
 /// A condition that is missed by more than this share of the round's change holds up the others: its contact is made
 /// stiffer by this factor.
-const SLOW: f64 = 0.1;
+const SLOW: f64 = 0.02;
 const STIFFER: f64 = 100.0;
 
 impl Problem {
-    /// Move the primal point onto the optimum that its contacts belong to. Whether that succeeded.
-    pub(super) fn polish(&mut self) -> bool {
-        self.find_contacts();
-        let (mut decisions, mut change) = (0, f64::INFINITY);
-        for _ in 0..ROUNDS {
-            change = self.solve_contacts();
+    /// Move the primal point onto the optimum that its contacts belong to; `further` from where the last call has left
+    /// it. Whether that succeeded.
+    pub(super) fn polish(&mut self, further: bool) -> bool {
+        let still = if further { FURTHER } else { STILL };
+        if further {
+            self.renew_contacts();
+        } else {
+            self.find_contacts();
+        }
+        let (mut decisions, mut idle, mut best) = (0, 0, f64::INFINITY);
+        for round in 0..MAX_ROUNDS {
+            let change = self.solve_contacts();
             // NaN ends here too.
             if !(change < WILD) {
                 return false;
@@ -46,13 +57,18 @@ impl Problem {
             }
             self.contacts.iter_mut().for_each(|c| c.multiplier = c.next);
             std::mem::swap(&mut self.w, &mut self.ahead);
-            if change < STILL {
+            if change < still {
                 return true;
+            }
+            idle = if change < GAINING * best { 0 } else { idle + 1 };
+            best = best.min(change);
+            if round >= ROUNDS && idle >= PATIENCE {
+                break;
             }
             decisions = 0;
             self.renew_contacts();
         }
-        change < NEARLY
+        best < NEARLY
     }
 
     /// Solve for the point ahead with what is held. The largest change of an unknown.
@@ -141,7 +157,7 @@ impl Problem {
         }
         for c in self.contacts.iter().filter(|c| c.held) {
             let y = &mut self.changes[c.segment / W].y;
-            for (y, moment) in y.iter_mut().zip(c.place.moments()) {
+            for (y, moment) in y.iter_mut().zip(c.moments()) {
                 y[c.segment % W] += c.multiplier * moment;
             }
         }

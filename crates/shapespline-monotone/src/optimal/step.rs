@@ -15,8 +15,9 @@ const AIM: f64 = 0.04;
 /// one fit in a thousand over twelve decades does not end.
 const SHORT: f64 = 0.3;
 const CENTRE: f64 = 0.8;
-/// Shares of the way to the strictly feasible point that are tried when the primal point is not feasible.
-const SHARES: [f64; 11] = [0.0, 1e-13, 1e-12, 1e-11, 1e-10, 1e-9, 1e-8, 1e-6, 1e-4, 1e-3, 2e-2];
+/// Shares of the way to the strictly feasible point that are tried at the nodes of a segment that is not feasible.
+const SHARES: [f64; 13] =
+    [0.0, 1e-13, 1e-12, 1e-11, 1e-10, 1e-9, 1e-8, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 2e-2];
 /// Mass of a segment's multipliers, in units of the mean of tr XZ, from which on it counts as held at 0 somewhere.
 const HELD: f64 = 10.0;
 /// A segment's multipliers are measured in the largest energy weight near it, which counts by this factor less with
@@ -46,6 +47,8 @@ pub(super) struct Problem {
     /// The primal point before an attempt to polish it.
     pub(super) kept: Vec<[f64; 2]>,
     pub(super) best: Vec<[f64; 2]>,
+    /// Which of [`SHARES`] a node goes.
+    levels: Vec<usize>,
     /// The shorter length of the last step.
     length: f64,
     /// tr XZ of all segments, each in its own unit.
@@ -247,19 +250,31 @@ impl Problem {
         count
     }
 
-    /// Put to `best` the primal point, or one between it and the strictly feasible one, that is feasible without
-    /// doubt. False when only points far from it are.
+    /// Put to `best` the primal point, moved towards the strictly feasible one at the nodes where it is not feasible
+    /// without doubt. False when that would have to be far.
     pub(super) fn feasible(&mut self, data: &Data, polished: bool) -> bool {
         let contacts = if polished { &self.contacts[..] } else { &[] };
-        for share in SHARES {
-            for ((b, w), i) in self.best.iter_mut().zip(&self.w).zip(&self.inside) {
-                *b = [w[0] + share * (i[0] - w[0]), w[1] + share * (i[1] - w[1])];
+        self.levels.clear();
+        self.levels.resize(self.n + 1, 0);
+        loop {
+            for (i, level) in self.levels.iter().enumerate() {
+                let (share, w, inside) = (SHARES[*level], self.w[i], self.inside[i]);
+                self.best[i] =
+                    [w[0] + share * (inside[0] - w[0]), w[1] + share * (inside[1] - w[1])];
             }
-            if super::certified(data, &self.best, contacts) {
+            let mut highest = 0;
+            super::uncertified(data, &self.best, contacts, |i| {
+                highest = highest.max(self.levels[i]).max(self.levels[i + 1]) + 1;
+                self.levels[i] += 1;
+                self.levels[i + 1] += 1;
+            });
+            if highest == 0 {
                 return true;
             }
+            if self.levels.iter().any(|level| *level >= SHARES.len()) {
+                return false;
+            }
         }
-        false
     }
 
     /// The energy of `best`, its distance from the bound that moments y give, exactly, and the largest share that a
