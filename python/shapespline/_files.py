@@ -17,6 +17,7 @@ import numpy as np
 from shapespline._convert import piecewise
 from shapespline._core import (
     CatmullRom,
+    FairSpline,
     MonotoneQuartic,
     MonotoneQuintic,
     MonotoneSpline,
@@ -45,6 +46,7 @@ METHODS: dict[type, str] = {
     NuSpline: "nu",
     TensionSpline: "tension",
     CatmullRom: "catmull-rom",
+    FairSpline: "fair",
     MonotoneQuartic: "quartic",
     MonotoneQuintic: "quintic",
 }
@@ -239,7 +241,8 @@ def write_curve(path: Path, curve: Any) -> None:
             if isinstance(ends, Tangents)
             else ends
         )
-        entries["tension"] = curve.tension.tolist()
+        if not isinstance(curve, FairSpline):
+            entries["tension"] = curve.tension.tolist()
         if (options := curve._fit_options()) is not None:
             entries["fit_options"] = options
     elif isinstance(curve, MonotoneSpline):

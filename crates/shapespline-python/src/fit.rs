@@ -5,14 +5,15 @@ use std::sync::Arc;
 use pyo3::prelude::*;
 use shapespline::{
     criteria::{self, Criteria, Criterion, Tolerances},
+    fair::{self, FairOptions},
     geometry::{Boundary, DVec3, DataPolygon, Dimension, InputError, Parametrization},
-    search::{Diagnostics, Fit, FitError, Outcome, SearchOptions, Status, Strategy},
+    search::{Fit, FitError, Outcome, SearchOptions, Status, Strategy},
 };
 
 use crate::{
     asked::Asked,
     curve::{Curve, Member, SpaceCurve},
-    diagnostics::Search,
+    diagnostics::{Search, Work},
     error::{convergence_error, fit_error},
     input::Points,
     options::{CriteriaNames, Ends, Parameters, tolerances},
@@ -123,10 +124,52 @@ impl Request {
 pub(crate) struct Made {
     curve: SpaceCurve,
     /// What a search did that did not end well, and the report on its last curve.
-    unsolved: Option<Box<(Diagnostics, criteria::ShapeReport)>>,
+    unsolved: Option<Box<Unsolved>>,
+}
+
+/// What is to be said of a search that did not end well.
+struct Unsolved {
+    iterations: usize,
+    /// Whether more of them might help.
+    limited: bool,
+    report: criteria::ShapeReport,
+}
+
+/// The fair curve, or the exception that carries the last one.
+pub(crate) fn fair(
+    py: Python<'_>,
+    data: Data,
+    options: &FairOptions,
+    request: &Request,
+) -> PyResult<SpaceCurve> {
+    let size = data.points.len();
+    let fit = |go_on: GoOn<'_>| {
+        let polygon = data.polygon().map_err(fair::FitError::from)?;
+        let fit = fair::FairSpline::fit_with(polygon, options, &mut |_| go_on())?;
+        Ok(Made::fair(fit, options.max_iterations.is_some(), request))
+    };
+    let made = interruptible(py, size, fit)?.map_err(|error: fair::FitError| match error {
+        fair::FitError::Input(error) => fit_error(error.into()),
+        fair::FitError::Solve(error) => fit_error(error.into()),
+    })?;
+    if made.unsolved.is_some() {
+        made.into_python(py, request, None)?;
+        return Err(pyo3::exceptions::PyRuntimeError::new_err("a curve that is not solved"));
+    }
+    Ok(made.curve)
 }
 
 impl Made {
+    /// A fair curve.
+    fn fair(fit: fair::Fit, limited: bool, request: &Request) -> Self {
+        let fair::Fit { curve, diagnostics, history, report } = fit;
+        let iterations = diagnostics.iterations;
+        let solved = diagnostics.status == fair::Status::Solved;
+        let unsolved = (!solved).then(|| Box::new(Unsolved { iterations, limited, report }));
+        let search = Search { work: Work::Fair(diagnostics, history), asked: request.asked };
+        Self { curve: SpaceCurve::of(Arc::new(curve), Some(search)), unsolved }
+    }
+
     /// A curve of given tension.
     pub(crate) fn built<C: Member>(curve: C) -> Self {
         Self { curve: SpaceCurve::of(Arc::new(curve), None), unsolved: None }
@@ -137,8 +180,10 @@ impl Made {
         let Fit { curve, outcome, report } = fit;
         let Outcome { diagnostics, history, .. } = outcome;
         let solved = diagnostics.status == Status::Solved;
-        let unsolved = (!solved).then(|| Box::new((diagnostics, report)));
-        let search = Search { diagnostics, history, asked: request.asked };
+        let limited = diagnostics.status == Status::IterationLimit;
+        let iterations = diagnostics.iterations;
+        let unsolved = (!solved).then(|| Box::new(Unsolved { iterations, limited, report }));
+        let search = Search { work: Work::Tension(diagnostics, history), asked: request.asked };
         Self { curve: SpaceCurve::of(Arc::new(curve), Some(search)), unsolved }
     }
 
@@ -151,20 +196,25 @@ impl Made {
         index: Option<usize>,
     ) -> PyResult<Py<PyAny>> {
         let Some(unsolved) = self.unsolved else { return self.curve.into_python(py) };
-        let (Diagnostics { status, iterations, .. }, report) = *unsolved;
+        let Unsolved { iterations, limited, report } = *unsolved;
         let violations: Vec<String> = Criterion::ALL
             .iter()
             .map(|&criterion| (report.count(criterion).violated, criterion.name()))
             .filter(|(violated, _)| *violated > 0)
             .map(|(violated, name)| format!("{name} on {violated}"))
             .collect();
+        // Rounding may hide a sign where none is wrong.
+        let failing = if violations.is_empty() {
+            format!("{} criteria are undecided", report.undecided.len())
+        } else {
+            format!("{} violate it", violations.join(", "))
+        };
         let whose = index.map_or_else(String::new, |k| format!("curve {k}: "));
         let message = format!(
-            "{whose}the shape is not preserved after {iterations} iterations: of {} segments, {} violate it; \
+            "{whose}the shape is not preserved after {iterations} iterations: of {} segments, {failing}; \
              {} (this exception carries the last curve and its report)",
             report.segments,
-            violations.join(", "),
-            if status == Status::IterationLimit { "raise max_iterations" } else { request.advice },
+            if limited { "raise max_iterations" } else { request.advice },
         );
         let curve: Arc<dyn Curve> = Arc::clone(&self.curve.curve);
         let report = curve.with_locations(report);

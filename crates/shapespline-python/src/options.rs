@@ -4,6 +4,7 @@ use pyo3::{exceptions::PyTypeError, prelude::*};
 use shapespline::{
     catmull_rom::Continuity,
     criteria::{Criteria, Criterion, Tolerances},
+    fair::Energy,
     geometry::{Boundary, Dimension, Parametrization, Side},
     search::{SearchOptions, Strategy, Tension},
     tension::TensionSpline,
@@ -33,6 +34,18 @@ fn name(argument: &str, object: &Bound<'_, PyAny>) -> PyResult<String> {
     text(object).ok_or_else(|| {
         PyTypeError::new_err(format!("{argument} must be a string, got {}", kind(object)))
     })
+}
+
+const ENERGIES: [(&str, Energy); 2] =
+    [("parametric", Energy::Parametric), ("bending", Energy::Bending)];
+
+pub(crate) fn energy(object: &Bound<'_, PyAny>) -> PyResult<Energy> {
+    choose("energy", &name("energy", object)?, &ENERGIES)
+}
+
+/// The name of an energy.
+pub(crate) fn energy_name(energy: Energy) -> &'static str {
+    ENERGIES.iter().find(|(_, known)| *known == energy).map_or("", |(name, _)| name)
 }
 
 pub(crate) fn side(object: &Bound<'_, PyAny>) -> PyResult<Side> {

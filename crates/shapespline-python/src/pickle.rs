@@ -7,12 +7,13 @@ use serde::{Serialize, de::DeserializeOwned};
 use shapespline::geometry::{
     self, Boundary, DVec3, DVec4, DataPolygon, Dimension, Parametrization,
 };
-use shapespline::prelude::{CatmullRom, NuSpline, TensionSpline};
+use shapespline::prelude::{CatmullRom, FairSpline, NuSpline, TensionSpline};
 
 use crate::{
     curve::{Curve, Family, SpaceCurve},
     diagnostics::{Diagnostics, Search, SearchStep},
     error::{Value, invalid},
+    fair::{FairDiagnostics, FairStep},
     fairness::Fairness,
     monotone::{Fits, Layout, MonotoneDiagnostics, PiecewisePolynomial, PiecewiseRows},
     piecewise::PiecewiseBezier,
@@ -22,7 +23,7 @@ use crate::{
 };
 
 /// Raised whenever the layout changes; bytes of other versions are refused, not guessed at.
-const VERSION: u8 = 5;
+const VERSION: u8 = 6;
 
 /// Length of the checksum, a CRC-32 of everything before it.
 const CHECKSUM: usize = 4;
@@ -41,10 +42,12 @@ pub(crate) enum Kind {
     SearchStep,
     MonotoneDiagnostics,
     Fairness,
+    FairDiagnostics,
+    FairStep,
 }
 
 impl Kind {
-    const ALL: [(Self, &'static str); 11] = [
+    const ALL: [(Self, &'static str); 13] = [
         (Self::Curve, "a curve"),
         (Self::Report, "a ShapeReport"),
         (Self::PiecewiseBezier, "a PiecewiseBezier"),
@@ -56,6 +59,8 @@ impl Kind {
         (Self::SearchStep, "a SearchStep"),
         (Self::MonotoneDiagnostics, "MonotoneDiagnostics"),
         (Self::Fairness, "Fairness"),
+        (Self::FairDiagnostics, "FairDiagnostics"),
+        (Self::FairStep, "a FairStep"),
     ];
 }
 
@@ -171,6 +176,8 @@ pub(crate) fn _from_bytes<'py>(py: Python<'py>, data: &[u8]) -> PyResult<Bound<'
         Kind::SearchStep => whole::<SearchStep>(bytes)?.into_bound_py_any(py),
         Kind::MonotoneDiagnostics => whole::<MonotoneDiagnostics>(bytes)?.into_bound_py_any(py),
         Kind::Fairness => whole::<Fairness>(bytes)?.into_bound_py_any(py),
+        Kind::FairDiagnostics => whole::<FairDiagnostics>(bytes)?.into_bound_py_any(py),
+        Kind::FairStep => whole::<FairStep>(bytes)?.into_bound_py_any(py),
     }
 }
 
@@ -189,6 +196,8 @@ fn read_curve(bytes: &mut &[u8]) -> PyResult<(Arc<dyn Curve>, Option<Search>)> {
         Family::Nu => Arc::new(take::<NuSpline>(bytes)?),
         Family::Tension => Arc::new(take::<TensionSpline>(bytes)?),
         Family::CatmullRom => Arc::new(take::<CatmullRom>(bytes)?),
+        // Its knots and nodes are checked as they are read; it has no tension.
+        Family::Fair => return Ok((Arc::new(take::<FairSpline>(bytes)?), search)),
     };
     // What no constructor makes would panic later.
     let points = curve.cubic().points().len();

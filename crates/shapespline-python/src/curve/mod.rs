@@ -10,6 +10,7 @@ use pyo3::{PyClass, PyClassInitializer, exceptions::PyTypeError, prelude::*};
 use shapespline::{
     catmull_rom::CatmullRom,
     criteria::{Record, ShapeReport},
+    fair::FairSpline,
     geometry::{self, Boundary, DVec3, DataPolygon, InputError, PiecewiseCubic, Side},
     nu::NuSpline,
     search::Interpolant,
@@ -19,7 +20,7 @@ use shapespline::{
 use crate::{
     catmull_rom,
     diagnostics::Search,
-    nu,
+    fair, nu,
     pickle::{self, Kind, Reduced},
     tension,
 };
@@ -40,6 +41,8 @@ pub(crate) enum Family {
     Tension,
     /// Catmull–Rom curves.
     CatmullRom,
+    /// Fair curves.
+    Fair,
 }
 
 /// A family of curves: what the crate of its mathematics does not say.
@@ -86,6 +89,10 @@ pub(crate) trait Curve: Debug + Send + Sync {
     /// One a point.
     fn tangents(&self) -> Vec<DVec3>;
     fn boundary(&self) -> Boundary;
+    /// The knots that are data points, where not all are.
+    fn nodes(&self) -> Option<&[usize]> {
+        None
+    }
     fn polygon(&self) -> Result<DataPolygon, InputError>;
     fn is_sound(&self) -> bool;
     /// Appends the curve in postcard's form.
@@ -125,7 +132,56 @@ impl<C: Member> Curve for C {
     }
 }
 
+impl Curve for FairSpline {
+    fn family(&self) -> Family {
+        Family::Fair
+    }
+    fn as_any(&self) -> &dyn Any {
+        self
+    }
+    fn path(&self) -> &dyn geometry::Curve {
+        self.curve()
+    }
+    fn cubic(&self) -> &PiecewiseCubic {
+        self.curve()
+    }
+    fn tension(&self) -> &[f64] {
+        &[]
+    }
+    fn tangents(&self) -> Vec<DVec3> {
+        self.tangents()
+    }
+    fn boundary(&self) -> Boundary {
+        self.boundary()
+    }
+    fn nodes(&self) -> Option<&[usize]> {
+        Some(self.nodes())
+    }
+    fn polygon(&self) -> Result<DataPolygon, InputError> {
+        self.polygon()
+    }
+    fn is_sound(&self) -> bool {
+        true
+    }
+    fn write(&self, bytes: Vec<u8>) -> Result<Vec<u8>, postcard::Error> {
+        postcard::to_extend(self, bytes)
+    }
+}
+
 impl dyn Curve + '_ {
+    /// Number of data points.
+    pub(crate) fn points(&self) -> usize {
+        self.nodes().map_or(self.cubic().points().len(), <[usize]>::len)
+    }
+
+    /// Those of some values, one per knot, that belong to data points.
+    pub(crate) fn at_points<T: Copy>(&self, values: &[T]) -> Vec<T> {
+        match self.nodes() {
+            Some(nodes) => nodes.iter().map(|&k| values[k]).collect(),
+            None => values.to_vec(),
+        }
+    }
+
     /// A record with its location in the curve's own parameter: the checker sees the image alone,
     /// run through linearly on each segment.
     pub(crate) fn located(&self, record: Record) -> Record {
@@ -152,7 +208,7 @@ impl dyn Curve + '_ {
 
 /// A curve through points in space or in the plane: the base of all families.
 ///
-/// Not made directly: use `NuSpline`, `TensionSpline` or `CatmullRom`. A curve is immutable, compares and hashes by identity, can be
+/// Not made directly: use `FairSpline`, `NuSpline`, `TensionSpline` or `CatmullRom`. A curve is immutable, compares and hashes by identity, can be
 /// pickled and copied, and may be used from several threads at once.
 ///
 /// Examples
@@ -180,6 +236,7 @@ impl SpaceCurve {
             Family::Nu => self.with_class(py, nu::NuSpline),
             Family::Tension => self.with_class(py, tension::TensionSpline),
             Family::CatmullRom => self.with_class(py, catmull_rom::CatmullRom),
+            Family::Fair => self.with_class(py, fair::FairSpline),
         }
     }
 
@@ -201,17 +258,21 @@ impl SpaceCurve {
     #[new]
     fn new() -> PyResult<Self> {
         Err(PyTypeError::new_err(
-            "SpaceCurve is the base of the curves: make a NuSpline, a TensionSpline or a CatmullRom",
+            "SpaceCurve is the base of the curves: make a FairSpline, a NuSpline, a \
+             TensionSpline or a CatmullRom",
         ))
     }
 
     fn __repr__(slf: &Bound<'_, Self>) -> PyResult<String> {
         let curve = &slf.get().curve;
         let cubic = curve.cubic();
-        let (n, knots) = (cubic.points().len(), cubic.knots());
+        let (n, knots) = (curve.points(), cubic.knots());
         let boundary = attributes::boundary_name(curve.boundary()).unwrap_or("tangents");
         let tense = curve.tension().iter().filter(|&&t| t > 0.0).count();
         let tension = match tense {
+            _ if curve.family() == Family::Fair => {
+                format!("{} extra knots", knots.len() - n)
+            }
             0 => "no tension".to_owned(),
             _ => {
                 let largest = curve.tension().iter().copied().fold(0.0, f64::max);
@@ -223,7 +284,7 @@ impl SpaceCurve {
             slf.get_type().name()?,
             if cubic.dimension().len() == 2 { "the plane" } else { "space" },
             short(knots[0]),
-            short(knots[n - 1]),
+            short(knots[knots.len() - 1]),
         ))
     }
 

@@ -3,7 +3,9 @@
 use std::sync::Arc;
 
 use shapespline::{
-    criteria::{Checker, Criterion, CurveChecker, CurveError, Notes, Record, ShapeReport},
+    criteria::{
+        Checker, Criterion, CurveChecker, CurveError, INTERPOLATION, Notes, Record, ShapeReport,
+    },
     geometry::{DVec3, DataPolygon, PiecewiseBezier},
 };
 
@@ -63,7 +65,7 @@ impl Judge<'_> {
 impl Subject {
     pub(crate) fn segments(&self) -> usize {
         match self {
-            Self::Own(curve) => curve.cubic().segments(),
+            Self::Own(curve) => curve.points() - 1,
             Self::Other { polygon, .. } => polygon.segments(),
         }
     }
@@ -81,6 +83,18 @@ impl Subject {
         match self {
             Self::Own(curve) => {
                 let polygon = curve.polygon()?;
+                if curve.nodes().is_some() {
+                    // Several pieces per segment: decided piece by piece.
+                    let pieces = PiecewiseBezier::from(curve.cubic());
+                    return CurveChecker::new(
+                        &polygon,
+                        &pieces,
+                        criteria,
+                        tolerances,
+                        INTERPOLATION,
+                    )
+                    .map(|checker| work(Judge::Other(checker)));
+                }
                 let checker = Checker::new(&polygon, criteria, tolerances);
                 Ok(work(Judge::Own(checker, curve.cubic().legs(), curve.as_ref())))
             }
