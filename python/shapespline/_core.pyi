@@ -62,6 +62,7 @@ _Criterion = Literal[
 _Boundary = Literal["zero-curvature", "natural", "periodic", "circular"]
 _Strategy = Literal["nussp", "growth", "fairest", "reduction"]
 _Continuity = Literal["C1", "G1"]
+_Directions = Literal["balanced", "parametrization"]
 _Parametrization = Literal["uniform", "chordal", "centripetal"]
 # An array or nested lists: what gives an array back where one number gives a number.
 _Many = NDArray[np.generic] | Sequence[float] | Sequence[Sequence[float]]
@@ -232,6 +233,7 @@ class CatmullRom(SpaceCurve):
         criteria: _Criterion | Iterable[_Criterion] | None = None,
         safety: float = 0.9,
         continuity: _Continuity = "C1",
+        directions: _Directions = "balanced",
         coplanarity: float = 0.2,
         collinearity: float = 0.2,
         tolerance: float = 1e-9,
@@ -405,6 +407,7 @@ def _fit_many(
     max_iterations: int | None,
     safety: float,
     continuity: _Continuity,
+    directions: _Directions,
     tension: float,
     tangent_scale: float,
 ) -> tuple[list[SpaceCurve | None], dict[int, Exception]]: ...

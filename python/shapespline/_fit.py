@@ -50,7 +50,7 @@ _SEARCH = ("strategy", "step", "max_iterations")
 METHODS: dict[str, tuple[Any, tuple[str, ...]]] = {
     "nu": (NuSpline, (*_CURVE, *_SEARCH, "tension")),
     "tension": (TensionSpline, (*_CURVE, *_SEARCH, "tangent_scale")),
-    "catmull-rom": (CatmullRom, (*_CURVE, "safety", "continuity", "tension")),
+    "catmull-rom": (CatmullRom, (*_CURVE, "safety", "continuity", "directions", "tension")),
     "quartic": (MonotoneQuartic, ("shape", "tolerance")),
     "quintic": (MonotoneQuintic, ("slopes", "fairness", "tolerance")),
 }

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
         _Boundary,
         _Continuity,
         _Criterion,
+        _Directions,
         _Parametrization,
         _Strategy,
     )
@@ -32,7 +33,7 @@ _TENSION_SEARCH = {**_SEARCH, "strategy": "fairest", "step": None, "max_iteratio
 _PRESERVING: dict[str, dict[str, Any]] = {
     "nu": _TENSION_SEARCH,
     "tension": _TENSION_SEARCH,
-    "catmull-rom": {**_SEARCH, "safety": 0.9, "continuity": "C1"},
+    "catmull-rom": {**_SEARCH, "safety": 0.9, "continuity": "C1", "directions": "balanced"},
 }
 _GIVEN: dict[str, dict[str, Any]] = {
     "nu": {"tension": 0.0},
@@ -135,6 +136,7 @@ def fit_many(
     max_iterations: int | None = None,
     safety: float | None = None,
     continuity: _Continuity | None = None,
+    directions: _Directions | None = None,
     tension: float | None = None,
     tangent_scale: float | None = None,
 ) -> Fits:
@@ -168,6 +170,8 @@ def fit_many(
         As for ``CatmullRom.shape_preserving``.
     continuity : {"C1", "G1"}, optional
         As for `CatmullRom`.
+    directions : {"balanced", "parametrization"}, optional
+        As for ``CatmullRom.shape_preserving``.
     tension : float, optional
         With ``shape_preserving=False``: that of every point of a `NuSpline` or `CatmullRom`.
     tangent_scale : float, optional
@@ -217,6 +221,7 @@ def fit_many(
         "max_iterations": max_iterations,
         "safety": safety,
         "continuity": continuity,
+        "directions": directions,
         "tension": tension,
         "tangent_scale": tangent_scale,
     }

@@ -57,6 +57,7 @@
 //! # Ok::<(), shapespline_catmull_rom::FitError>(())
 //! ```
 
+mod balanced;
 mod bounds;
 mod curve;
 mod handles;
@@ -64,7 +65,7 @@ mod parts;
 mod stretch;
 mod tangents;
 
-pub use curve::{CatmullRom, Continuity, HandleOptions};
+pub use curve::{CatmullRom, Continuity, Directions, HandleOptions};
 pub use shapespline_search::{Fit, FitError, Interpolant, Status, Tension};
 
 /// The examples of the README are run as tests.

@@ -92,7 +92,7 @@ impl Diagnostics {
 /// Attributes
 /// ----------
 /// phase : str
-///     ``"raise"``: tension was raised where criteria failed; ``"relax"``: runs of tension were
+///     ``"raise"``: tension was raised where criteria failed; ``"lower"``: tensions were
 ///     lowered; ``"verify"``: everything was solved and checked anew.
 /// violations : int
 ///     Segments that violated a criterion when the step began.
@@ -108,7 +108,7 @@ impl Diagnostics {
 #[pyclass(module = "shapespline", frozen, get_all, eq, hash, weakref)]
 #[derive(Debug, Clone, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
 pub(crate) struct SearchStep {
-    /// ``"raise"``, ``"relax"`` or ``"verify"``.
+    /// ``"raise"``, ``"lower"`` or ``"verify"``.
     phase: String,
     /// Segments that violated a criterion when the step began.
     violations: usize,
@@ -120,7 +120,7 @@ impl From<&search::Step> for SearchStep {
     fn from(step: &search::Step) -> Self {
         let phase = match step.phase {
             Phase::Raise => "raise",
-            Phase::Relax => "relax",
+            Phase::Lower => "lower",
             Phase::Verify => "verify",
         };
         Self { phase: phase.to_owned(), violations: step.violated, changed: step.changed }

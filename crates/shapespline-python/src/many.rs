@@ -10,7 +10,7 @@ use pyo3::{
     types::{PyDict, PyTuple},
 };
 use shapespline::{
-    catmull_rom::{self, Continuity, HandleOptions},
+    catmull_rom::{self, Continuity, Directions, HandleOptions},
     geometry::{Boundary, DVec3, DataPolygon, Parametrization, Ragged},
     nu::{self, Strategy},
     search::{Collection, FitError, Tension, fit_many},
@@ -110,6 +110,7 @@ pub(crate) fn _fit_many<'py>(
     #[pyo3(from_py_with = options::max_iterations)] max_iterations: Option<usize>,
     #[pyo3(from_py_with = options::safety)] safety: f64,
     #[pyo3(from_py_with = options::continuity)] continuity: Continuity,
+    #[pyo3(from_py_with = options::directions)] directions: Directions,
     #[pyo3(from_py_with = options::tension)] tension: f64,
     #[pyo3(from_py_with = options::tangent_scale)] tangent_scale: f64,
 ) -> PyResult<(Bound<'py, PyTuple>, Bound<'py, PyDict>)> {
@@ -147,7 +148,7 @@ pub(crate) fn _fit_many<'py>(
                 let tension = Tension::Uniform(tension);
                 return catmull_rom::CatmullRom::new(polygon, tension, continuity).map(Made::built);
             }
-            let options = HandleOptions { criteria, tolerances, safety, continuity };
+            let options = HandleOptions { criteria, tolerances, safety, continuity, directions };
             catmull_rom::CatmullRom::shape_preserving_with(polygon, &options, &mut |_| ask())
                 .map(|fit| Made::searched(fit, &request))
         }),

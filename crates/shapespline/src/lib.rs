@@ -52,7 +52,7 @@ pub use shapespline_tension as tension;
 
 /// What most users need.
 pub mod prelude {
-    pub use shapespline_catmull_rom::{CatmullRom, Continuity, HandleOptions};
+    pub use shapespline_catmull_rom::{CatmullRom, Continuity, Directions, HandleOptions};
     pub use shapespline_criteria::{Checker, Criteria, Criterion, ShapeReport, Tolerances};
     pub use shapespline_fair::{Energy, FairOptions, FairSpline};
     pub use shapespline_geometry::{
