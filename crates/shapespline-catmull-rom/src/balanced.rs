@@ -97,8 +97,11 @@ impl Node {
         let to = |chord: DVec3, has: bool| if has { angle(chord, direction) } else { 0.0 };
         let angles = [to(before, has[0]), to(after, has[1])];
         let turns = has == [true; 2] && before.cross(after).length() > zero;
-        let is_free =
-            turns && angles.iter().all(|&a| a > 0.0) && angles[0] + angles[1] < LARGEST_TURN;
+        let twist = planar || [i + n - 1, i].iter().all(|&k| twists(polygon, k % n, zero));
+        let is_free = turns
+            && angles.iter().all(|&a| a > 0.0)
+            && angles[0] + angles[1] < LARGEST_TURN
+            && twist;
         Self { tangent, angles, is_free }
     }
 
