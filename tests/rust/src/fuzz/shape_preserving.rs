@@ -115,7 +115,13 @@ impl Judged<'_, '_> {
             Err(error) => return readable(&error),
         };
         let status = fit.outcome.diagnostics.status;
-        assert_eq!(status == Status::Solved, fit.report.ok(), "{status:?}\n{}", fit.report);
+        // A search that is cut short does not accept what rounding hides, a report calls it ok.
+        let proved = fit.report.ok() && fit.report.undecided.is_empty();
+        if status == Status::Solved {
+            assert!(fit.report.ok(), "{}", fit.report);
+        } else {
+            assert!(!proved, "{status:?}\n{}", fit.report);
+        }
         assert_eq!(status == Status::Solved, fit.outcome.faults.is_empty());
         if self.must_solve {
             assert_eq!(status, Status::Solved, "{:?}\n{}", self.polygon, fit.report);
