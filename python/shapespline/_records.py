@@ -12,7 +12,7 @@ __all__ = ["NodeRecord", "OscillationRecord", "UndecidedRecord"]
 class UndecidedRecord(NamedTuple):
     """A criterion that could be neither proved nor refuted on a segment.
 
-    Something in it is zero to rounding. Segments that are single cubics are always decided.
+    Something in it is zero to rounding: the sign lies within the bound of its error.
 
     Attributes
     ----------

@@ -55,7 +55,7 @@ pub(crate) struct Limits {
 const ARMIJO: f64 = 1e-4;
 /// What rounding may add to the function, over the sizes of its terms.
 const ROUNDING: f64 = 1e-14;
-/// Share of `½ΔᵀH_kΔ` by which a segment may miss its quadratic model before it is to blame.
+/// Share of `½ΔᵀH_kΔ` by which a segment may miss its quadratic model before its steps are damped.
 const MISS: f64 = 0.7;
 /// First damping, the factor by which it grows, and that by which it falls where it was not needed.
 const FIRST: f64 = 1.0;
@@ -187,7 +187,7 @@ impl Chain {
             misses.push((miss, blamed));
         }
         if !misses.iter().any(|miss| miss.1) {
-            // Nobody alone: whoever misses most.
+            // No segment exceeds its share: damp the one that misses most.
             let worst = (0..misses.len()).max_by(|&a, &b| misses[a].0.total_cmp(&misses[b].0));
             worst.into_iter().for_each(|k| misses[k].1 = true);
         }

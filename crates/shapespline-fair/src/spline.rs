@@ -33,7 +33,7 @@ pub struct FairSpline {
     energy: Energy,
 }
 
-/// What was stored, by whomever: checked as far as anything could go wrong later.
+/// The stored form, checked on reading as far as anything could go wrong later.
 #[cfg(feature = "serde")]
 #[derive(serde::Deserialize)]
 #[serde(rename = "FairSpline")]

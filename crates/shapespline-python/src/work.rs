@@ -75,7 +75,7 @@ pub(crate) fn detached<T: Send>(py: Python<'_>, size: usize, work: impl FnOnce()
     })
 }
 
-/// A question whether to go on, asked from any thread: `Break` after Ctrl-C.
+/// Called regularly from any thread; returns `Break` after Ctrl-C.
 pub(crate) type GoOn<'a> = &'a (dyn Fn() -> ControlFlow<()> + Sync);
 
 fn go_on(stop: &AtomicBool) -> ControlFlow<()> {
