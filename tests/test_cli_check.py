@@ -72,6 +72,35 @@ def test_what_is_written_is_judged_as_the_curve_itself(case, run, tmp_path):
         assert text.startswith("shape preserved" if own.ok else "shape violated")
 
 
+@pytest.mark.parametrize("repeats", [False, True], ids=["plain", "repeated"])
+@pytest.mark.parametrize("method", ["nu", "tension", "catmull-rom"])
+def test_closed_and_repeated_points(method, repeats, run, tmp_path):
+    """The fit is that of Python; a check of its file needs no option, and one of another does."""
+    csv, file, other = tmp_path / "p.csv", tmp_path / "c.json", tmp_path / "other.json"
+    rows = polygons.random_walk(np.random.default_rng(5), 9, 3)
+    given = rows.repeat([1, 2, 1, 1, 3, 1, 1, 1, 1], axis=0) if repeats else rows
+    np.savetxt(csv, given, delimiter=",", header="x,y,z", comments="", fmt="%.17g")
+    closed = ["--closed", *(["--repeated", "drop"] if repeats else [])]
+    assert run("fit", csv, "--method", method, *closed, "-o", file)[0] == 0
+    entries = json.loads(file.read_text(encoding="utf-8"))
+    family = {"nu": ss.NuSpline, "tension": ss.TensionSpline, "catmull-rom": ss.CatmullRom}[method]
+    expected = family.shape_preserving(rows, closed=True)
+    np.testing.assert_array_equal(entries["control"], expected.bezier)
+    assert len(entries["parameters"]) == len(given) + 1
+    assert run("check", csv, file)[0] == 0
+    write(other, {key: entries[key] for key in ("control", "breaks", "boundary")})
+    status, _, errors = run("check", csv, other)
+    assert status == 2
+    assert ("10 breaks, but there are 12" if repeats else "pass closed=True") in errors
+    assert run("check", csv, other, *closed)[0] == 0
+
+
+def test_functions_are_not_closed(run, points):
+    status, _, errors = run("fit", points, "--method", "quartic", "--closed")
+    assert status == 2
+    assert "--closed is no option of method quartic" in errors
+
+
 def test_an_undecided_shape_is_not_kept(run, tmp_path):
     csv = write(tmp_path / "p.csv", "0 0 0\n1 0 0\n1 1 0\n0 1 1\n")
     corners = np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 1]])

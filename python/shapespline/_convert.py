@@ -101,7 +101,7 @@ def piecewise(curve: Any) -> PiecewiseBezier:
     if isinstance(curve, PiecewiseBezier):
         return curve
     if isinstance(curve, SpaceCurve):
-        return PiecewiseBezier(curve.bezier, curve.parameters)
+        return PiecewiseBezier(curve.bezier, curve.knots)
     if isinstance(curve, MonotoneSpline):
         return _of_monotone(curve)
     if all(hasattr(curve, name) for name in ("t", "c", "k")):

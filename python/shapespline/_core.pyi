@@ -102,6 +102,8 @@ class SpaceCurve:
     @property
     def parameters(self) -> _Floats: ...
     @property
+    def knots(self) -> _Floats: ...
+    @property
     def tangents(self) -> _Floats: ...
     @property
     def tension(self) -> _Floats: ...
@@ -155,6 +157,8 @@ class NuSpline(SpaceCurve):
         parameters: _Parametrization | float | ArrayLike = "chordal",
         *,
         boundary: _Boundary | Tangents = "zero-curvature",
+        closed: bool = False,
+        repeated: Literal["error", "drop"] = "error",
         tension: float | ArrayLike = 0.0,
     ) -> NuSpline: ...
     @classmethod
@@ -164,6 +168,8 @@ class NuSpline(SpaceCurve):
         parameters: _Parametrization | float | ArrayLike = "chordal",
         *,
         boundary: _Boundary | Tangents = "zero-curvature",
+        closed: bool = False,
+        repeated: Literal["error", "drop"] = "error",
         criteria: _Criterion | Iterable[_Criterion] | None = None,
         strategy: _Strategy = "fairest",
         step: float = 0.5,
@@ -183,6 +189,8 @@ class TensionSpline(SpaceCurve):
         parameters: _Parametrization | float | ArrayLike = "chordal",
         *,
         boundary: _Boundary | Tangents = "natural",
+        closed: bool = False,
+        repeated: Literal["error", "drop"] = "error",
         tangent_scale: float | ArrayLike | tuple[ArrayLike, ArrayLike] = 1.0,
     ) -> TensionSpline: ...
     @classmethod
@@ -192,6 +200,8 @@ class TensionSpline(SpaceCurve):
         parameters: _Parametrization | float | ArrayLike = "chordal",
         *,
         boundary: _Boundary | Tangents = "natural",
+        closed: bool = False,
+        repeated: Literal["error", "drop"] = "error",
         criteria: _Criterion | Iterable[_Criterion] | None = None,
         strategy: _Strategy = "fairest",
         step: float | None = None,
@@ -219,6 +229,8 @@ class CatmullRom(SpaceCurve):
         parameters: _Parametrization | float | ArrayLike = "centripetal",
         *,
         boundary: _Boundary | Tangents = "natural",
+        closed: bool = False,
+        repeated: Literal["error", "drop"] = "error",
         tension: float | ArrayLike = 0.0,
         continuity: _Continuity = "C1",
     ) -> CatmullRom: ...
@@ -229,6 +241,8 @@ class CatmullRom(SpaceCurve):
         parameters: _Parametrization | float | ArrayLike = "centripetal",
         *,
         boundary: _Boundary | Tangents = "natural",
+        closed: bool = False,
+        repeated: Literal["error", "drop"] = "error",
         criteria: _Criterion | Iterable[_Criterion] | None = None,
         safety: float = 0.9,
         continuity: _Continuity = "C1",
@@ -359,7 +373,7 @@ class ShapeReport:
 @final
 class Diagnostics:
     @property
-    def status(self) -> Literal["solved", "iteration-limit", "stalled"]: ...
+    def status(self) -> Literal["given", "solved", "iteration-limit", "stalled"]: ...
     @property
     def iterations(self) -> int: ...
     @property
@@ -368,6 +382,8 @@ class Diagnostics:
     def relaxations(self) -> int: ...
     @property
     def nodes_changed(self) -> int: ...
+    @property
+    def dropped(self) -> tuple[int, ...]: ...
     def __eq__(self, other: object, /) -> bool: ...
     def __ne__(self, other: object, /) -> bool: ...
     def __hash__(self) -> int: ...
@@ -393,7 +409,9 @@ def _fit_many(
     offsets: ArrayLike,
     method: str,
     parameters: _Parametrization | float | ArrayLike,
-    boundary: _Boundary | Tangents,
+    boundary: _Boundary | Tangents | None,
+    closed: bool,
+    repeated: str,
     shape_preserving: bool,
     threads: int | None,
     criteria: _Criterion | Iterable[_Criterion] | None,
@@ -413,6 +431,8 @@ def _check_shape(
     curve: PiecewiseBezier,
     parameters: _Parametrization | float | ArrayLike | None,
     boundary: _Boundary | Tangents | None,
+    closed: bool,
+    repeated: str,
     criteria: _Criterion | Iterable[_Criterion] | None,
     coplanarity: float | None,
     collinearity: float | None,
@@ -428,7 +448,9 @@ def _polygon_inflections(
 def _polygon_shape(
     points: ArrayLike,
     parameters: _Parametrization | float | ArrayLike,
-    boundary: _Boundary | Tangents,
+    boundary: _Boundary | Tangents | None,
+    closed: bool,
+    repeated: str,
     tolerance: float,
 ) -> dict[str, Any]: ...
 

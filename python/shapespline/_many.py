@@ -73,7 +73,7 @@ class Fits(Sequence["SpaceCurve | None"]):
     >>> fits[2].check().ok, fits[1]
     (True, None)
     >>> print(fits.errors[1])
-    curve 1: points[1] repeats points[0]: (5, 5); neighbouring points must differ
+    curve 1: points[1] repeats points[0]: (5, 5); ...
     """
 
     __slots__ = ("__weakref__", "_curves", "_errors")
@@ -123,7 +123,9 @@ def fit_many(
     parameters: _Parametrization | float | ArrayLike | None = None,
     *,
     shape_preserving: bool = True,
-    boundary: _Boundary | Tangents = "zero-curvature",
+    boundary: _Boundary | Tangents | None = None,
+    closed: bool = False,
+    repeated: Literal["error", "drop"] = "error",
     errors: Literal["return", "raise"] = "return",
     threads: int | None = None,
     criteria: _Criterion | Iterable[_Criterion] | None = None,
@@ -152,8 +154,16 @@ def fit_many(
         As for the curves; an array holds those of all curves. Default: that of the class.
     shape_preserving : bool
         Whether to keep the shape of each curve's points; else tension is given.
-    boundary : {"zero-curvature", "natural", "periodic", "circular"} or Tangents
-        The ends of every curve.
+    boundary : {"zero-curvature", "natural", "periodic", "circular"} or Tangents, optional
+        The ends of every curve. Default: periodic if ``closed``, else natural.
+    closed : bool
+        Whether the first point of every curve is also its last, repeated or not: periodic ends, and
+        no other. An array of parameters then has one entry more for each curve, that of the return
+        to its first point, unless its points repeat it.
+    repeated : {"error", "drop"}
+        What becomes of points that equal the one before them, or are given its parameter: their
+        curve fails, or they are left out of it. Indices and arrays of a curve refer to its points
+        as given; its ``diagnostics.dropped`` lists those left out.
     errors : {"return", "raise"}
         What becomes of curves that fail: they are ``None``, and their exceptions are in the
         attribute ``errors`` of what is returned; or the first exception is raised. All other
@@ -231,7 +241,16 @@ def fit_many(
     if parameters is None:
         parameters = _PARAMETERS.get(str(method), "chordal")
     curves, failed = _fit_many(
-        points, offsets, method, parameters, boundary, bool(shape_preserving), threads, **options
+        points,
+        offsets,
+        method,
+        parameters,
+        boundary,
+        closed,
+        repeated,
+        bool(shape_preserving),
+        threads,
+        **options,
     )
     if failed and errors == "raise":
         raise failed[min(failed)]

@@ -14,7 +14,7 @@ from shapespline._io import LONGEST, shortened
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-__all__ = ["BOUNDARIES", "Parser", "add_fit_options", "add_points", "names", "real"]
+__all__ = ["BOUNDARIES", "Parser", "add_closing", "add_fit_options", "add_points", "names", "real"]
 
 BOUNDARIES = ["zero-curvature", "natural", "periodic", "circular"]
 
@@ -89,6 +89,22 @@ def add_points(parser: argparse.ArgumentParser) -> None:
     )
 
 
+def add_closing(group: argparse._ActionsContainer, otherwise: str) -> None:
+    """Give the group the options of closed data and of repeated points."""
+    group.add_argument(
+        "--closed",
+        action="store_true",
+        default=None,
+        help=f"the first point is also the last, repeated or not (default: {otherwise})",
+    )
+    group.add_argument(
+        "--repeated",
+        choices=["error", "drop"],
+        help="what becomes of points that equal the one before them, or are given its parameter: "
+        f"refused, or left out (default: {otherwise})",
+    )
+
+
 def add_fit_options(parser: argparse.ArgumentParser, methods: Iterable[str]) -> None:
     """Give the parser the arguments of ``shapespline fit``."""
     add_points(parser)
@@ -136,8 +152,9 @@ def add_fit_options(parser: argparse.ArgumentParser, methods: Iterable[str]) -> 
     curve.add_argument(
         "--boundary",
         choices=BOUNDARIES,
-        help="end conditions (default: zero-curvature)",
+        help="end conditions (default: zero-curvature; with --closed, periodic)",
     )
+    add_closing(curve, "open, and refused")
     for end in ("start", "end"):
         curve.add_argument(
             f"--{end}-tangent",

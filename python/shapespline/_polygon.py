@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
@@ -131,7 +131,9 @@ def polygon_shape(
     points: ArrayLike,
     parameters: _Parametrization | float | ArrayLike = "chordal",
     *,
-    boundary: _Boundary | Tangents = "zero-curvature",
+    boundary: _Boundary | Tangents | None = None,
+    closed: bool = False,
+    repeated: Literal["error", "drop"] = "error",
     tolerance: float = 1e-9,
 ) -> PolygonShape:
     """Return what points say about the shape of a curve through them.
@@ -142,8 +144,16 @@ def polygon_shape(
         The points, n ≥ 2; neighbours must differ.
     parameters : {"chordal", "centripetal", "uniform"}, float or array_like, shape (n,)
         As for `NuSpline`.
-    boundary : {"zero-curvature", "natural", "periodic", "circular"} or Tangents
+    boundary : {"zero-curvature", "natural", "periodic", "circular"} or Tangents, optional
         End conditions, as for `NuSpline`: what stands in for the missing chord at each end.
+        Default: periodic if ``closed``, else natural.
+    closed : bool
+        Whether the first point is also the last, repeated or not: periodic ends, and no other.
+        Arrays of parameters then have one entry more, for the return to the first point, unless the
+        points repeat it.
+    repeated : {"error", "drop"}
+        What becomes of points that equal the one before them, or are given its parameter: they are
+        refused, or left out. Indices and arrays refer to the points as given in either case.
     tolerance : float
         In [0, 1): points whose turning angle has a smaller sine count as collinear, and four whose
         unit chords span a smaller volume as coplanar.
@@ -177,6 +187,6 @@ def polygon_shape(
     >>> shape.torsion[1:3]
     array([1., 1.])
     """
-    parts = _core._polygon_shape(points, parameters, boundary, tolerance)
+    parts = _core._polygon_shape(points, parameters, boundary, closed, repeated, tolerance)
     parts["calls"] = tuple(tuple(names) for names in parts["calls"])
     return PolygonShape(**parts)

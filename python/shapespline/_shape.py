@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
@@ -37,6 +37,8 @@ def check_shape(
     *,
     parameters: _Parametrization | float | ArrayLike | None = None,
     boundary: _Boundary | Tangents | None = None,
+    closed: bool = False,
+    repeated: Literal["error", "drop"] = "error",
     criteria: _Criterion | Iterable[_Criterion] | None = None,
     coplanarity: float | None = None,
     collinearity: float | None = None,
@@ -62,6 +64,13 @@ def check_shape(
         curve of this module through its own points keeps its own; another is periodic where the
         last point is the first and the curve goes on there in the direction it began with, and else
         has zero curvature, so that the ends ask for neither convexity nor inflection.
+    closed : bool
+        Whether the first point is also the last, repeated or not: periodic ends, and no other.
+        Arrays of parameters then have one entry more, for the return to the first point, unless the
+        points repeat it.
+    repeated : {"error", "drop"}
+        What becomes of points that equal the one before them, or are given its parameter: they are
+        refused, or left out. Indices and arrays refer to the points as given in either case.
     criteria : str or iterable of str, optional
         Any of ``"convexity"``, ``"inflection"``, ``"turning"``, ``"torsion"``, ``"coplanarity"``,
         ``"collinearity"``, ``"global-convexity"`` and ``"regular"``; default all but the last two.
@@ -127,21 +136,25 @@ def check_shape(
     if not (parameters is None or isinstance(parameters, (str, float, int))):
         parameters = _core._floats("parameters", parameters)
     chosen: Any = parameters
-    if isinstance(curve, SpaceCurve) and boundary is None and _is_own(points, curve, parameters):
-        return curve.check(
+    ours = isinstance(curve, SpaceCurve) and boundary is None
+    if ours and _is_own(points, curve, parameters, closed):
+        report: ShapeReport = curve.check(
             criteria, coplanarity=coplanarity, collinearity=collinearity, tolerance=tolerance
         )
+        return report
     if isinstance(curve, TensionSpline):
         _at_its_points(curve, parameters)
     if _is_array(curve):
         curve = _core._floats("curve", curve)
-        chosen = _breaks(points, curve, parameters)
+        chosen = _breaks(points, curve, parameters, closed)
         curve = _core.PiecewiseBezier(curve, chosen)
     return _core._check_shape(
         points,
         piecewise(curve),
         chosen,
         boundary,
+        closed,
+        repeated,
         criteria,
         coplanarity,
         collinearity,
@@ -150,10 +163,12 @@ def check_shape(
     )
 
 
-def _is_own(points: Floats, curve: SpaceCurve, parameters: Any) -> bool:
+def _is_own(points: Floats, curve: SpaceCurve, parameters: Any, closed: bool) -> bool:
     """Whether these are the points that the curve was made for, at the same parameters."""
     own = curve.points
-    if not np.array_equal(points, own):
+    if closed and len(points) + 1 == len(own):
+        own = own[:-1] if curve.boundary == "periodic" else own
+    if not np.array_equal(points, own) or (closed and curve.boundary != "periodic"):
         return False
     if parameters is None:
         return True
@@ -180,7 +195,7 @@ def _at_its_points(curve: TensionSpline, parameters: Any) -> None:
         )
 
 
-def _breaks(points: Floats, control: Floats, parameters: Any) -> Floats:
+def _breaks(points: Floats, control: Floats, parameters: Any, closed: bool) -> Floats:
     """Return the breaks of Bézier control points: the parameters of the points."""
     if parameters is None:
         raise InputError(
@@ -193,7 +208,8 @@ def _breaks(points: Floats, control: Floats, parameters: Any) -> Floats:
         text = f"curve must have shape (segments, degree + 1, dim), got shape {shape}"
         raise InputError(text, "curve", value=shape)
     # By name, or checked as for a curve through the points.
-    u: Floats = _core._polygon_shape(points, parameters, "zero-curvature", 0.0)["parameters"]
+    shape_of_points = _core._polygon_shape(points, parameters, None, closed, "error", 0.0)
+    u: Floats = shape_of_points["parameters"]
     if len(u) != shape[0] + 1:
         raise InputError(
             f"curve must hold one piece between two points: {len(u) - 1} for {len(u)} points, got "

@@ -14,6 +14,8 @@ import traceback
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 import shapespline
 from shapespline import _core, _fit
 from shapespline._files import read_curve
@@ -27,7 +29,15 @@ from shapespline._io import (
     write,
 )
 from shapespline._monotone_check import check_monotone
-from shapespline._options import BOUNDARIES, Parser, add_fit_options, add_points, names, real
+from shapespline._options import (
+    BOUNDARIES,
+    Parser,
+    add_closing,
+    add_fit_options,
+    add_points,
+    names,
+    real,
+)
 from shapespline._progress import progress
 from shapespline._tables import read_function, read_points
 
@@ -89,7 +99,10 @@ def _located(
     data: Points, curve: CurveFile, options: argparse.Namespace, error: shapespline.InputError
 ) -> Exception:
     """Return the error as one about the points, about the curve, or about an option."""
-    if error.argument in (*CHECKED, "boundary") and getattr(options, error.argument) is not None:
+    if (
+        error.argument in (*CHECKED, "boundary", "closed", "repeated")
+        and getattr(options, error.argument) is not None
+    ):
         return UsageError(str(error))
     # What the curve's own file says comes first.
     own = ["points", *(["parameters"] if curve.parameters is None and data.parameters is not None
@@ -97,6 +110,20 @@ def _located(
     if error.argument in own:
         return FileError(data.path, str(error), data.line(error.index))
     return FileError(curve.path, str(error))
+
+
+def _closing(options: argparse.Namespace, curve: CurveFile, points: int) -> tuple[bool, str]:
+    """Return whether the points are closed, and what becomes of those that are repeated.
+
+    Unless the user says so, as the fit had it whose parameters the file holds.
+    """
+    closed, repeated = options.closed, options.repeated
+    u = curve.parameters
+    if closed is None:
+        closed = u is not None and curve.boundary == "periodic" and len(u) == points + 1
+    if repeated is None:
+        repeated = "error" if u is None or (np.diff(u) != 0).all() else "drop"
+    return closed, repeated
 
 
 def _check(options: argparse.Namespace) -> int:
@@ -117,11 +144,14 @@ def _check(options: argparse.Namespace) -> int:
                 tolerance = 1e-9 if asked["tolerance"] is None else asked["tolerance"]
                 report = check_monotone(data.points, curve.curve, tolerance=tolerance)
             else:
+                closed, repeated = _closing(options, curve, len(data.points))
                 report = _core._check_shape(
                     data.points,
                     curve.curve,
                     parameters,
                     options.boundary or curve.boundary,
+                    closed,
+                    repeated,
                     asked["criteria"],
                     asked["coplanarity"],
                     asked["collinearity"],
@@ -177,6 +207,7 @@ def _add_check(commands: argparse._SubParsersAction[Parser]) -> None:
         choices=BOUNDARIES,
         help="what stands in for the missing chords at the ends (default: what CURVE.json says)",
     )
+    add_closing(parser, "as CURVE.json has it")
     for name, default, what in (
         ("coplanarity", 0.2, "sine of the largest angle between binormal and plane normal"),
         ("collinearity", 0.2, "sine of the largest angle between tangent and line"),

@@ -7,6 +7,7 @@ use crate::{Boundary, DataPolygon, Dimension, InputError, Parametrization, polyg
 
 /// What is done about a point (or a given parameter) that repeats the one before it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Repeated {
     /// It is refused.
     #[default]
@@ -39,14 +40,28 @@ impl InputPoints {
     /// # Errors
     /// Those of [`DataPolygon::with_dimension`], with indices of the input.
     pub fn polygon(self) -> Result<(DataPolygon, InputMap), InputError> {
-        let Self { mut points, dimension, mut parametrization, boundary, closed, repeated } = self;
+        let (kept, map) = self.kept()?;
+        let Self { points, dimension, parametrization, boundary, .. } = kept;
+        let polygon = DataPolygon::with_dimension(points, dimension, &parametrization, boundary);
+        match polygon {
+            Ok(polygon) => Ok((polygon, map)),
+            Err(error) => Err(map.in_input(error)),
+        }
+    }
+
+    /// The points that a polygon is made of, closed and without those that are left out.
+    ///
+    /// # Errors
+    /// Given parameters that are not one for each point, or fall while repeated points are left out.
+    pub fn kept(mut self) -> Result<(Self, InputMap), InputError> {
+        let points = &mut self.points;
         let mut map = InputMap { count: points.len(), ..InputMap::default() };
-        if closed && points.len() > 1 && !ends_agree(&points) {
+        if self.closed && points.len() > 1 && !ends_agree(points) {
             points.push(points[0]);
             map.count += 1;
             map.closing = true;
         }
-        if let Parametrization::Given(u) = &parametrization
+        if let Parametrization::Given(u) = &self.parametrization
             && u.len() != map.count
         {
             let per = if map.closing {
@@ -57,20 +72,16 @@ impl InputPoints {
             let (expected, found) = (map.count, u.len());
             return Err(InputError::Length { argument: "parameters", expected, found, per });
         }
-        if repeated == Repeated::Drop {
-            map.leave_out(&points, &parametrization)?;
+        if self.repeated == Repeated::Drop {
+            map.leave_out(points, &self.parametrization)?;
             if !map.dropped.is_empty() {
-                points = map.nodes(&points);
-                if let Parametrization::Given(u) = &mut parametrization {
+                *points = map.nodes(points);
+                if let Parametrization::Given(u) = &mut self.parametrization {
                     *u = map.nodes(u);
                 }
             }
         }
-        let polygon = DataPolygon::with_dimension(points, dimension, &parametrization, boundary);
-        match polygon {
-            Ok(polygon) => Ok((polygon, map)),
-            Err(error) => Err(map.in_input(error)),
-        }
+        Ok((self, map))
     }
 }
 
@@ -137,6 +148,63 @@ impl InputMap {
     #[must_use]
     pub fn closing(&self) -> bool {
         self.closing
+    }
+
+    /// Whether the polygon is the input: nothing was left out or added.
+    #[must_use]
+    pub fn is_plain(&self) -> bool {
+        self.dropped.is_empty() && !self.closing
+    }
+
+    /// Whether a polygon of so many points can have been made from this input: of one that any
+    /// constructor made it can.
+    #[must_use]
+    pub fn fits(&self, points: usize) -> bool {
+        let ascend = self.dropped.windows(2).all(|w| w[0] < w[1]);
+        let inside = self.dropped.first().is_none_or(|&first| first > 0)
+            && self.dropped.last().is_none_or(|&last| last < self.count);
+        let counts = self.dropped.len().checked_add(points) == Some(self.count);
+        ascend && inside && counts && self.left_out.len() == self.dropped.len()
+    }
+
+    /// Values at the nodes, from one for each point of the input. The end of the segment that closes it
+    /// may have a value of its own, which must be that of the first point, or none.
+    ///
+    /// # Errors
+    /// Another number of values.
+    pub fn node_values(
+        &self,
+        argument: &'static str,
+        values: &[f64],
+    ) -> Result<Vec<f64>, InputError> {
+        let given = values.len() + usize::from(self.closing);
+        let (expected, found) = (self.count - usize::from(self.closing), values.len());
+        match values.first() {
+            Some(&first) if self.closing && given == self.count => {
+                let mut nodes = self.nodes(values);
+                nodes.push(first);
+                Ok(nodes)
+            }
+            _ if values.len() == self.count => Ok(self.nodes(values)),
+            _ => Err(InputError::Length { argument, expected, found, per: "one for each point" }),
+        }
+    }
+
+    /// Values on the segments, from one for each segment of the input, that which closes it included.
+    ///
+    /// # Errors
+    /// Another number of values.
+    pub fn segment_values(
+        &self,
+        argument: &'static str,
+        values: &[f64],
+    ) -> Result<Vec<f64>, InputError> {
+        let (expected, found) = (self.count - 1, values.len());
+        if found != expected {
+            let per = "one for each segment";
+            return Err(InputError::Length { argument, expected, found, per });
+        }
+        Ok(self.segments(values))
     }
 
     /// Index in the input of a node of the polygon. Cost O(log of the points left out).

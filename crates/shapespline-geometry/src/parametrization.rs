@@ -133,10 +133,8 @@ fn bad_spacing(points: &[DVec3], index: usize, previous: f64, value: f64) -> Inp
     } else if points[index - 1] == points[index] {
         let value = Coordinates { vector: points[index], dimension: Dimension::Three };
         InputError::RepeatedPoint { index, value }
-    } else if value <= previous {
-        // A chord lost to rounding beside the length so far.
-        InputError::NotIncreasing { argument: "parameters", index, previous, value }
     } else {
+        // Of zero where a chord is lost to rounding beside the length so far.
         InputError::TooClose { argument: "parameters", index, spacing: value - previous }
     }
 }

@@ -4,11 +4,12 @@ use pyo3::{PyClassInitializer, prelude::*, types::PyType};
 use shapespline::{
     catmull_rom::{self, Continuity, HandleOptions},
     criteria::Criteria,
+    geometry::Repeated,
 };
 
 use crate::{
     curve::SpaceCurve,
-    fit::{Data, Request, build, preserve},
+    fit::{CurveInput, Request, build, preserve},
     input::Points,
     options::{self, CriteriaNames, Ends, NodalTension, Parameters, tolerances},
 };
@@ -25,6 +26,15 @@ use crate::{
 /// boundary : {"natural", "zero-curvature", "periodic", "circular"} or Tangents
 ///     No second derivative at both ends (two names); closed data, whose last point is the first; end
 ///     tangents of the circles through the first and the last three points; or given end tangents.
+/// closed : bool
+///     Whether the first point is also the last, repeated or not: periodic ends, and no other. Arrays of
+///     parameters then have one entry more, for the return to the first point, unless the points repeat
+///     it; so have ``points`` and all other attributes.
+/// repeated : {"error", "drop"}
+///     What becomes of points that equal the one before them, or are given its parameter: they are
+///     refused, or left out. Indices and arrays refer to the points as given in either case;
+///     ``diagnostics.dropped`` lists the points that were left out, and ``bezier`` and ``knots`` know
+///     nothing of them.
 /// tension : float or array_like, shape (n,)
 ///     Cardinal tension in [0, 1), without unit: the part by which the handles at a point are
 ///     shortened. 0 gives the Catmull–Rom curve, 1 would give the polygon. Of closed data, the first
@@ -72,23 +82,30 @@ impl CatmullRom {
             points,
             parameters=Parameters::CENTRIPETAL,
             *,
-            boundary=Ends::ZERO_CURVATURE,
+            boundary=Ends::Default,
+            closed=false,
+            repeated=Repeated::Error,
             tension=NodalTension::NONE,
             continuity=Continuity::C1,
         ),
-        text_signature = "(points, parameters='centripetal', *, boundary='natural', tension=0.0, \
+        text_signature = "(points, parameters='centripetal', *, boundary='natural', closed=False, repeated='error', tension=0.0, \
                           continuity='C1')"
     )]
+    // One argument a keyword: this is the signature that users see.
+    #[allow(clippy::too_many_arguments)]
     fn new(
         py: Python<'_>,
         points: Points,
         parameters: Parameters,
         boundary: Ends,
+        #[pyo3(from_py_with = options::closed)] closed: bool,
+        #[pyo3(from_py_with = options::repeated)] repeated: Repeated,
         tension: NodalTension,
         #[pyo3(from_py_with = options::continuity)] continuity: Continuity,
     ) -> PyResult<PyClassInitializer<Self>> {
-        let data = Data::new(points, parameters, boundary)?;
-        let base = build(py, data, |polygon| {
+        let input = CurveInput::new(points, parameters, boundary, closed, repeated)?;
+        let base = build(py, input, |polygon, map| {
+            let tension = tension.at_nodes(map)?;
             catmull_rom::CatmullRom::new(polygon, tension.tension(), continuity)
         })?;
         Ok(PyClassInitializer::from(base).add_subclass(Self))
@@ -104,6 +121,8 @@ impl CatmullRom {
     ///     Parameters of the points, as for `CatmullRom`.
     /// boundary : {"natural", "zero-curvature", "periodic", "circular"} or Tangents
     ///     End conditions, as for `CatmullRom`.
+    /// closed, repeated
+    ///     As for `CatmullRom`.
     /// criteria : str or iterable of str, optional
     ///     What to keep: any of ``"convexity"``, ``"inflection"``, ``"turning"``, ``"torsion"``,
     ///     ``"coplanarity"``, ``"collinearity"``, ``"global-convexity"``, which follows from the first,
@@ -151,7 +170,9 @@ impl CatmullRom {
             points,
             parameters=Parameters::CENTRIPETAL,
             *,
-            boundary=Ends::ZERO_CURVATURE,
+            boundary=Ends::Default,
+            closed=false,
+            repeated=Repeated::Error,
             criteria=CriteriaNames::DEFAULT,
             safety=0.9,
             continuity=Continuity::C1,
@@ -159,8 +180,7 @@ impl CatmullRom {
             collinearity=0.2,
             tolerance=1e-9,
         ),
-        text_signature = "($type, points, parameters='centripetal', *, boundary='natural', \
-                          criteria=None, safety=0.9, continuity='C1', coplanarity=0.2, \
+        text_signature = "($type, points, parameters='centripetal', *, boundary='natural', closed=False, repeated='error', criteria=None, safety=0.9, continuity='C1', coplanarity=0.2, \
                           collinearity=0.2, tolerance=1e-9)"
     )]
     // One argument a keyword: this is the signature that users see.
@@ -170,6 +190,8 @@ impl CatmullRom {
         points: Points,
         parameters: Parameters,
         boundary: Ends,
+        #[pyo3(from_py_with = options::closed)] closed: bool,
+        #[pyo3(from_py_with = options::repeated)] repeated: Repeated,
         criteria: CriteriaNames,
         #[pyo3(from_py_with = options::safety)] safety: f64,
         #[pyo3(from_py_with = options::continuity)] continuity: Continuity,
@@ -177,11 +199,11 @@ impl CatmullRom {
         #[pyo3(from_py_with = options::collinearity)] collinearity: f64,
         #[pyo3(from_py_with = options::tolerance)] tolerance: f64,
     ) -> PyResult<Py<PyAny>> {
-        let data = Data::new(points, parameters, boundary)?;
+        let input = CurveInput::new(points, parameters, boundary, closed, repeated)?;
         let (criteria, tolerances) =
             (criteria.or(Criteria::OF_FITS), tolerances(coplanarity, collinearity, tolerance)?);
         let options = HandleOptions { criteria, tolerances, safety, continuity };
-        preserve(class.py(), data, &Request::of_handles(criteria, tolerances), |polygon, go_on| {
+        preserve(class.py(), input, &Request::of_handles(criteria, tolerances), |polygon, go_on| {
             catmull_rom::CatmullRom::shape_preserving_with(polygon, &options, &mut |_| go_on())
         })
     }

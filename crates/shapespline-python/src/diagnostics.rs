@@ -1,6 +1,6 @@
 //! What a search did, for Python.
 
-use pyo3::prelude::*;
+use pyo3::{prelude::*, types::PyTuple};
 use shapespline::search::{self, Phase, Status};
 
 use crate::{
@@ -24,7 +24,8 @@ pub(crate) struct Search {
 /// status : str
 ///     ``"solved"``: every criterion holds, by a complete solve and check at the end. Curves that a
 ///     `ConvergenceError` carries say ``"iteration-limit"`` (``max_iterations`` was reached) or
-///     ``"stalled"`` (a criterion fails where tension can rise no further).
+///     ``"stalled"`` (a criterion fails where tension can rise no further). ``"given"``: there was no
+///     search.
 /// iterations : int
 ///     Checks of the curve while tension was raised, the last one, which found no fault, included.
 /// solves : int
@@ -33,6 +34,8 @@ pub(crate) struct Search {
 ///     Rounds in which tension was lowered again (``strategy="fairest"``).
 /// nodes_changed : int
 ///     Nodes whose tension is not zero in the end.
+/// dropped : tuple of int
+///     Indices of the points that were left out (``repeated="drop"``).
 ///
 /// Examples
 /// --------
@@ -40,23 +43,37 @@ pub(crate) struct Search {
 /// >>> points = [[0, 0, 0], [4, 0, 0], [4.5, 0.5, 0], [4.5, 1, 0.5], [4.5, 1, 5]]
 /// >>> ss.NuSpline.shape_preserving(points, "uniform").diagnostics
 /// Diagnostics(status='solved', iterations=..., solves=..., relaxations=..., nodes_changed=5)
-#[pyclass(module = "shapespline", frozen, get_all, eq, hash, weakref)]
+#[pyclass(module = "shapespline", frozen, eq, hash, weakref)]
 #[derive(Debug, Clone, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
 pub(crate) struct Diagnostics {
-    /// How the search ended: ``"solved"``, ``"iteration-limit"`` or ``"stalled"``.
+    /// How the search ended: ``"solved"``, ``"iteration-limit"`` or ``"stalled"``; ``"given"`` without
+    /// one.
+    #[pyo3(get)]
     status: String,
     /// Checks of the curve while tension was raised, the last one included.
+    #[pyo3(get)]
     iterations: usize,
     /// Solves of the system of tangents, complete or in part.
+    #[pyo3(get)]
     solves: usize,
     /// Rounds in which tension was lowered again.
+    #[pyo3(get)]
     relaxations: usize,
     /// Nodes whose tension is not zero in the end.
+    #[pyo3(get)]
     nodes_changed: usize,
+    /// Indices of the points that were left out.
+    dropped: Vec<usize>,
 }
 
-impl From<&search::Diagnostics> for Diagnostics {
-    fn from(d: &search::Diagnostics) -> Self {
+impl Diagnostics {
+    /// Of a curve of given tension.
+    pub(crate) fn given(dropped: &[usize]) -> Self {
+        let (status, dropped) = ("given".to_owned(), dropped.to_vec());
+        Self { status, iterations: 0, solves: 1, relaxations: 0, nodes_changed: 0, dropped }
+    }
+
+    pub(crate) fn of(d: &search::Diagnostics, dropped: &[usize]) -> Self {
         let status = match d.status {
             Status::Solved => "solved",
             Status::IterationLimit => "iteration-limit",
@@ -69,15 +86,27 @@ impl From<&search::Diagnostics> for Diagnostics {
             solves: d.solves,
             relaxations: d.relaxations,
             nodes_changed: d.nodes_changed,
+            dropped: dropped.to_vec(),
         }
     }
 }
 
 #[pymethods]
 impl Diagnostics {
+    /// Indices of the points that were left out, ascending (``repeated="drop"``).
+    #[getter]
+    fn dropped<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        PyTuple::new(py, &self.dropped)
+    }
+
     fn __repr__(&self) -> String {
+        let dropped = match self.dropped.len() {
+            0 => String::new(),
+            1 => ", 1 point left out".to_owned(),
+            n => format!(", {n} points left out"),
+        };
         format!(
-            "Diagnostics(status='{}', iterations={}, solves={}, relaxations={}, nodes_changed={})",
+            "Diagnostics(status='{}', iterations={}, solves={}, relaxations={}, nodes_changed={}{dropped})",
             self.status, self.iterations, self.solves, self.relaxations, self.nodes_changed
         )
     }

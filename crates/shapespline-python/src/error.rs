@@ -251,24 +251,52 @@ impl From<&MonotoneError> for Refused {
     }
 }
 
-/// Unusable input, in the words of the crate that found it.
+/// What the caller can do about an error, after a semicolon, or nothing.
+fn remedy(error: &InputError) -> &'static str {
+    match error {
+        InputError::RepeatedPoint { .. } => "; pass repeated='drop' to leave it out",
+        InputError::NotIncreasing { argument: "parameters", previous, value, .. }
+            if previous == value =>
+        {
+            "; pass repeated='drop' to leave that point out"
+        }
+        InputError::NotClosed { .. } => {
+            "; pass closed=True where the curve returns to the first point by itself"
+        }
+        _ => "",
+    }
+}
+
+/// Unusable input, in the words of the crate that found it, with the remedy where there is one.
 pub(crate) fn input_error(error: InputError) -> PyErr {
+    Refused::from(&error).raise(format!("{error}{}", remedy(&error)))
+}
+
+/// The same for calls without the options that are the remedy.
+pub(crate) fn plain_error(error: InputError) -> PyErr {
     Refused::from(&error).raise(error.to_string())
 }
 
 /// No curve, in the words of the crate that found it.
 pub(crate) fn fit_error(error: FitError) -> PyErr {
-    Refused::from(&error).raise(error.to_string())
+    match error {
+        FitError::Input(error) => input_error(error),
+        other => Refused::from(&other).raise(other.to_string()),
+    }
 }
 
 /// No curve `k` of many.
 pub(crate) fn curve_error(k: usize, error: &FitError) -> PyErr {
-    Refused::from(error).within(k).raise(format!("curve {k}: {error}"))
+    let remedy = if let FitError::Input(error) = error { remedy(error) } else { "" };
+    Refused::from(error).within(k).raise(format!("curve {k}: {error}{remedy}"))
 }
 
 /// Points and a curve that do not belong together.
 pub(crate) fn subject_error(error: CurveError) -> PyErr {
-    Refused::from(&error).raise(error.to_string())
+    match error {
+        CurveError::Input(error) => input_error(error),
+        other => Refused::from(&other).raise(other.to_string()),
+    }
 }
 
 /// No function, in the words of the crate that found it.

@@ -5,13 +5,13 @@ use std::sync::Arc;
 use pyo3::prelude::*;
 use shapespline::{
     criteria::{self, Criteria, Criterion, Tolerances},
-    geometry::{Boundary, DVec3, DataPolygon, Dimension, InputError, Parametrization},
+    geometry::{DataPolygon, InputMap, InputPoints, Repeated},
     search::{Diagnostics, Fit, FitError, Outcome, SearchOptions, Status, Strategy},
 };
 
 use crate::{
     asked::Asked,
-    curve::{Curve, Member, SpaceCurve},
+    curve::{Fitted, Member, SpaceCurve},
     diagnostics::Search,
     error::{convergence_error, fit_error},
     input::Points,
@@ -21,23 +21,33 @@ use crate::{
 };
 
 /// What every curve is made from.
-pub(crate) struct Data {
-    pub(crate) points: Vec<DVec3>,
-    pub(crate) dimension: Dimension,
-    pub(crate) parametrization: Parametrization,
-    pub(crate) boundary: Boundary,
-}
+pub(crate) struct CurveInput(pub(crate) InputPoints);
 
-impl Data {
-    pub(crate) fn new(points: Points, parameters: Parameters, boundary: Ends) -> PyResult<Self> {
+impl CurveInput {
+    pub(crate) fn new(
+        points: Points,
+        parameters: Parameters,
+        boundary: Ends,
+        closed: bool,
+        repeated: Repeated,
+    ) -> PyResult<Self> {
         let Points { points, dimension } = points;
-        let boundary = boundary.of(dimension)?;
-        Ok(Self { points, dimension, parametrization: parameters.0, boundary })
+        let boundary = boundary.of(dimension, closed)?;
+        let parametrization = parameters.0;
+        Ok(Self(InputPoints { points, dimension, parametrization, boundary, closed, repeated }))
     }
 
-    fn polygon(self) -> Result<DataPolygon, InputError> {
-        let Self { points, dimension, parametrization, boundary } = self;
-        DataPolygon::with_dimension(points, dimension, &parametrization, boundary)
+    /// Makes something of the polygon; errors have indices of the input.
+    fn make<T>(
+        self,
+        make: impl FnOnce(DataPolygon, InputMap) -> Result<T, FitError>,
+    ) -> Result<T, FitError> {
+        let (polygon, map) = self.0.polygon()?;
+        let places = map.clone();
+        make(polygon, map).map_err(|error| match error {
+            FitError::Input(error) => FitError::Input(places.in_input(error)),
+            other => other,
+        })
     }
 }
 
@@ -71,23 +81,29 @@ impl Searching {
 /// The curve of given tension.
 pub(crate) fn build<C: Member>(
     py: Python<'_>,
-    data: Data,
-    make: impl FnOnce(DataPolygon) -> Result<C, FitError> + Send,
+    input: CurveInput,
+    make: impl FnOnce(DataPolygon, &InputMap) -> Result<C, FitError> + Send,
 ) -> PyResult<SpaceCurve> {
-    let size = data.points.len();
-    let made = detached(py, size, || Ok(Made::built(make(data.polygon()?)?)));
+    let (size, repeated) = (input.0.points.len(), input.0.repeated);
+    let made = detached(py, size, || {
+        input.make(|polygon, map| Ok(Made::built(make(polygon, &map)?, map, repeated)))
+    });
     Ok(made.map_err(fit_error)?.curve)
 }
 
 /// The shape-preserving curve, or the exception that carries the last one.
 pub(crate) fn preserve<C: Member>(
     py: Python<'_>,
-    data: Data,
+    input: CurveInput,
     request: &Request,
     search: impl FnOnce(DataPolygon, GoOn<'_>) -> Result<Fit<C>, FitError> + Send,
 ) -> PyResult<Py<PyAny>> {
-    let size = data.points.len();
-    let fit = |go_on: GoOn<'_>| Ok(Made::searched(search(data.polygon()?, go_on)?, request));
+    let (size, repeated) = (input.0.points.len(), input.0.repeated);
+    let fit = |go_on: GoOn<'_>| {
+        input.make(|polygon, map| {
+            Ok(Made::searched(search(polygon, go_on)?, request, map, repeated))
+        })
+    };
     interruptible(py, size, fit)?.map_err(fit_error)?.into_python(py, request, None)
 }
 
@@ -128,18 +144,25 @@ pub(crate) struct Made {
 
 impl Made {
     /// A curve of given tension.
-    pub(crate) fn built<C: Member>(curve: C) -> Self {
-        Self { curve: SpaceCurve::of(Arc::new(curve), None), unsolved: None }
+    pub(crate) fn built<C: Member>(curve: C, map: InputMap, repeated: Repeated) -> Self {
+        let curve = Arc::new(Fitted::new(curve, map, repeated));
+        Self { curve: SpaceCurve::of(curve, None), unsolved: None }
     }
 
     /// A curve that was searched for.
-    pub(crate) fn searched<C: Member>(fit: Fit<C>, request: &Request) -> Self {
+    pub(crate) fn searched<C: Member>(
+        fit: Fit<C>,
+        request: &Request,
+        map: InputMap,
+        repeated: Repeated,
+    ) -> Self {
         let Fit { curve, outcome, report } = fit;
         let Outcome { diagnostics, history, .. } = outcome;
         let solved = diagnostics.status == Status::Solved;
         let unsolved = (!solved).then(|| Box::new((diagnostics, report)));
         let search = Search { diagnostics, history, asked: request.asked };
-        Self { curve: SpaceCurve::of(Arc::new(curve), Some(search)), unsolved }
+        let curve = Arc::new(Fitted::new(curve, map, repeated));
+        Self { curve: SpaceCurve::of(curve, Some(search)), unsolved }
     }
 
     /// The object of the family's class, or the exception that carries it: its message begins with the
@@ -166,7 +189,7 @@ impl Made {
             violations.join(", "),
             if status == Status::IterationLimit { "raise max_iterations" } else { request.advice },
         );
-        let curve: Arc<dyn Curve> = Arc::clone(&self.curve.curve);
+        let curve = Arc::clone(&self.curve.curve);
         let report = curve.with_locations(report);
         let subject = Subject::Own(curve);
         let report = ShapeReport::of(report, subject, request.asked);

@@ -11,9 +11,9 @@ use pyo3::{
 };
 use shapespline::{
     catmull_rom::{self, Continuity, HandleOptions},
-    geometry::{Boundary, DVec3, DataPolygon, Parametrization, Ragged},
+    geometry::{Boundary, DVec3, DataPolygon, InputMap, Parametrization, Ragged, Repeated},
     nu::{self, Strategy},
-    search::{Collection, FitError, Tension, fit_many},
+    search::{Collection, FitError, Tension},
     tension::{self, TangentScale},
 };
 
@@ -31,6 +31,8 @@ struct Rows {
     offsets: Offsets,
     parametrization: Parametrization,
     boundary: Boundary,
+    closed: bool,
+    repeated: Repeated,
     threads: Option<usize>,
 }
 
@@ -39,34 +41,37 @@ fn run<'py>(
     py: Python<'py>,
     rows: Rows,
     request: &Request,
-    make: impl Fn(DataPolygon, GoOn<'_>) -> Result<Made, FitError> + Sync,
+    make: impl Fn(DataPolygon, InputMap, GoOn<'_>) -> Result<Made, FitError> + Sync,
 ) -> PyResult<(Bound<'py, PyTuple>, Bound<'py, PyDict>)> {
-    let Rows { points, offsets, parametrization, boundary, threads } = rows;
+    let Rows { points, offsets, parametrization, boundary, closed, repeated, threads } = rows;
     // A line that every option suits: an error now is the options', not that of any curve.
     let named = match &parametrization {
         Parametrization::Given(_) => &Parametrization::Uniform,
         named => named,
     };
     let line = DataPolygon::new(vec![DVec3::ZERO, DVec3::X], named, Boundary::ZeroCurvature);
-    make(line.map_err(input_error)?, &|| ControlFlow::Continue(())).map_err(fit_error)?;
+    make(line.map_err(input_error)?, InputMap::default(), &|| ControlFlow::Continue(()))
+        .map_err(fit_error)?;
 
     let Points { points, dimension } = points;
     let points = Ragged::new(&points, &offsets.0).map_err(input_error)?;
-    let collection = Collection { points, dimension, parametrization, boundary };
-    collection.check().map_err(input_error)?;
-    let fit = |polygon, ask: GoOn<'_>| match ask() {
-        ControlFlow::Continue(()) => make(polygon, ask).map(Some),
-        ControlFlow::Break(()) => Ok(None),
+    let collection = Collection { points, dimension, parametrization, boundary, closed, repeated };
+    let ranges = collection.check().map_err(input_error)?;
+    let fit = |k: usize, ask: GoOn<'_>| {
+        // Errors are large and rare.
+        collection
+            .fit(k, &ranges, |polygon, map| match ask() {
+                ControlFlow::Continue(()) => make(polygon, map, ask).map(Some),
+                ControlFlow::Break(()) => Ok(None),
+            })
+            .map_err(Box::new)
     };
     let longest = (0..points.len()).map(|k| points.range(k).len()).max().unwrap_or(0);
     let fits = if threads.is_none() && longest < PARALLEL {
-        // Errors are large and rare.
-        let fit_one = |k, ask: GoOn<'_>| collection.fit(k, |p| fit(p, ask)).map_err(Box::new);
-        interruptible_each(py, points.len(), fit_one)?
+        interruptible_each(py, points.len(), fit)?
     } else {
-        let fit_all = |ask: GoOn<'_>| fit_many(&collection, threads, |p| fit(p, ask));
-        let fits = interruptible(py, usize::MAX, fit_all)?.map_err(input_error)?;
-        fits.into_iter().map(|fit| fit.map_err(Box::new)).collect()
+        let fit_all = |ask: GoOn<'_>| points.map(threads, |k, _| fit(k, ask));
+        interruptible(py, usize::MAX, fit_all)?.map_err(input_error)?
     };
 
     let (mut curves, errors) = (Vec::with_capacity(fits.len()), PyDict::new(py));
@@ -98,7 +103,9 @@ pub(crate) fn _fit_many<'py>(
     offsets: Offsets,
     #[pyo3(from_py_with = options::method)] method: Method,
     parameters: Parameters,
-    boundary: Ends,
+    boundary: Option<Ends>,
+    #[pyo3(from_py_with = options::closed)] closed: bool,
+    #[pyo3(from_py_with = options::repeated)] repeated: Repeated,
     shape_preserving: bool,
     #[pyo3(from_py_with = options::threads)] threads: Option<usize>,
     criteria: CriteriaNames,
@@ -113,8 +120,9 @@ pub(crate) fn _fit_many<'py>(
     #[pyo3(from_py_with = options::tension)] tension: f64,
     #[pyo3(from_py_with = options::tangent_scale)] tangent_scale: f64,
 ) -> PyResult<(Bound<'py, PyTuple>, Bound<'py, PyDict>)> {
-    let boundary = boundary.of(points.dimension)?;
-    let rows = Rows { points, offsets, parametrization: parameters.0, boundary, threads };
+    let boundary = boundary.unwrap_or(Ends::Default).of(points.dimension, closed)?;
+    let parametrization = parameters.0;
+    let rows = Rows { points, offsets, parametrization, boundary, closed, repeated, threads };
     let step = step.unwrap_or_else(|| method.default_step(strategy));
     let search = Searching { criteria, strategy, step, max_iterations }.options(
         coplanarity,
@@ -127,29 +135,32 @@ pub(crate) fn _fit_many<'py>(
         Method::Nu | Method::Tension => Request::from(&search),
     };
     match method {
-        Method::Nu => run(py, rows, &request, |polygon, ask| {
+        Method::Nu => run(py, rows, &request, |polygon, map, ask| {
             if !shape_preserving {
-                return nu::NuSpline::new(polygon, Tension::Uniform(tension)).map(Made::built);
+                return nu::NuSpline::new(polygon, Tension::Uniform(tension))
+                    .map(|curve| Made::built(curve, map, repeated));
             }
             nu::NuSpline::shape_preserving_with(polygon, &search, &mut |_| ask())
-                .map(|fit| Made::searched(fit, &request))
+                .map(|fit| Made::searched(fit, &request, map, repeated))
         }),
-        Method::Tension => run(py, rows, &request, |polygon, ask| {
+        Method::Tension => run(py, rows, &request, |polygon, map, ask| {
             if !shape_preserving {
                 let scale = TangentScale::Uniform(tangent_scale);
-                return tension::TensionSpline::new(polygon, scale).map(Made::built);
+                return tension::TensionSpline::new(polygon, scale)
+                    .map(|curve| Made::built(curve, map, repeated));
             }
             tension::TensionSpline::shape_preserving_with(polygon, &search, &mut |_| ask())
-                .map(|fit| Made::searched(fit, &request))
+                .map(|fit| Made::searched(fit, &request, map, repeated))
         }),
-        Method::CatmullRom => run(py, rows, &request, |polygon, ask| {
+        Method::CatmullRom => run(py, rows, &request, |polygon, map, ask| {
             if !shape_preserving {
                 let tension = Tension::Uniform(tension);
-                return catmull_rom::CatmullRom::new(polygon, tension, continuity).map(Made::built);
+                return catmull_rom::CatmullRom::new(polygon, tension, continuity)
+                    .map(|curve| Made::built(curve, map, repeated));
             }
             let options = HandleOptions { criteria, tolerances, safety, continuity };
             catmull_rom::CatmullRom::shape_preserving_with(polygon, &options, &mut |_| ask())
-                .map(|fit| Made::searched(fit, &request))
+                .map(|fit| Made::searched(fit, &request, map, repeated))
         }),
     }
 }

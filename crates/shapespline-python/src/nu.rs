@@ -1,11 +1,14 @@
 //! `NuSpline`: what is particular to ν-splines.
 
 use pyo3::{PyClassInitializer, prelude::*, types::PyType};
-use shapespline::nu::{self, Strategy};
+use shapespline::{
+    geometry::Repeated,
+    nu::{self, Strategy},
+};
 
 use crate::{
     curve::SpaceCurve,
-    fit::{Data, Request, Searching, build, preserve},
+    fit::{CurveInput, Request, Searching, build, preserve},
     input::Points,
     options::{self, CriteriaNames, Ends, NodalTension, Parameters},
 };
@@ -22,6 +25,15 @@ use crate::{
 /// boundary : {"zero-curvature", "natural", "periodic", "circular"} or Tangents
 ///     Zero curvature at both ends (two names); closed data, whose last point is the first; end
 ///     tangents of the circles through the first and the last three points; or given end tangents.
+/// closed : bool
+///     Whether the first point is also the last, repeated or not: periodic ends, and no other. Arrays of
+///     parameters then have one entry more, for the return to the first point, unless the points repeat
+///     it; so have ``points`` and all other attributes.
+/// repeated : {"error", "drop"}
+///     What becomes of points that equal the one before them, or are given its parameter: they are
+///     refused, or left out. Indices and arrays refer to the points as given in either case;
+///     ``diagnostics.dropped`` lists the points that were left out, and ``bezier`` and ``knots`` know
+///     nothing of them.
 /// tension : float or array_like, shape (n,)
 ///     ν ≥ 0, without unit: 0 gives the C² cubic spline, and growing tension pulls the curve to the
 ///     polygon. Of closed data, the first and the last entry must agree.
@@ -65,20 +77,28 @@ impl NuSpline {
             points,
             parameters=Parameters::CHORDAL,
             *,
-            boundary=Ends::ZERO_CURVATURE,
+            boundary=Ends::Default,
+            closed=false,
+            repeated=Repeated::Error,
             tension=NodalTension::NONE,
         ),
-        text_signature = "(points, parameters='chordal', *, boundary='zero-curvature', tension=0.0)"
+        text_signature = "(points, parameters='chordal', *, boundary='zero-curvature', closed=False, repeated='error', tension=0.0)"
     )]
+    // One argument a keyword: this is the signature that users see.
+    #[allow(clippy::too_many_arguments)]
     fn new(
         py: Python<'_>,
         points: Points,
         parameters: Parameters,
         boundary: Ends,
+        #[pyo3(from_py_with = options::closed)] closed: bool,
+        #[pyo3(from_py_with = options::repeated)] repeated: Repeated,
         tension: NodalTension,
     ) -> PyResult<PyClassInitializer<Self>> {
-        let data = Data::new(points, parameters, boundary)?;
-        let base = build(py, data, |polygon| nu::NuSpline::new(polygon, tension.tension()))?;
+        let input = CurveInput::new(points, parameters, boundary, closed, repeated)?;
+        let base = build(py, input, |polygon, map| {
+            nu::NuSpline::new(polygon, tension.at_nodes(map)?.tension())
+        })?;
         Ok(PyClassInitializer::from(base).add_subclass(Self))
     }
 
@@ -95,6 +115,8 @@ impl NuSpline {
     ///     Parameters of the points, as for `NuSpline`.
     /// boundary : {"zero-curvature", "natural", "periodic", "circular"} or Tangents
     ///     End conditions, as for `NuSpline`.
+    /// closed, repeated
+    ///     As for `NuSpline`.
     /// criteria : str or iterable of str, optional
     ///     What to keep: any of ``"convexity"``, ``"inflection"``, ``"turning"``, ``"torsion"``,
     ///     ``"coplanarity"``, ``"collinearity"``, ``"global-convexity"`` and ``"regular"``; default all
@@ -150,7 +172,9 @@ impl NuSpline {
             points,
             parameters=Parameters::CHORDAL,
             *,
-            boundary=Ends::ZERO_CURVATURE,
+            boundary=Ends::Default,
+            closed=false,
+            repeated=Repeated::Error,
             criteria=CriteriaNames::DEFAULT,
             strategy=Strategy::Fairest,
             step=0.5,
@@ -159,8 +183,7 @@ impl NuSpline {
             tolerance=1e-9,
             max_iterations=None,
         ),
-        text_signature = "($type, points, parameters='chordal', *, boundary='zero-curvature', \
-                          criteria=None, strategy='fairest', step=0.5, coplanarity=0.2, \
+        text_signature = "($type, points, parameters='chordal', *, boundary='zero-curvature', closed=False, repeated='error', criteria=None, strategy='fairest', step=0.5, coplanarity=0.2, \
                           collinearity=0.2, tolerance=1e-9, max_iterations=None)"
     )]
     // One argument a keyword: this is the signature that users see.
@@ -170,6 +193,8 @@ impl NuSpline {
         points: Points,
         parameters: Parameters,
         boundary: Ends,
+        #[pyo3(from_py_with = options::closed)] closed: bool,
+        #[pyo3(from_py_with = options::repeated)] repeated: Repeated,
         criteria: CriteriaNames,
         #[pyo3(from_py_with = options::strategy)] strategy: Strategy,
         #[pyo3(from_py_with = options::step)] step: f64,
@@ -178,13 +203,13 @@ impl NuSpline {
         #[pyo3(from_py_with = options::tolerance)] tolerance: f64,
         #[pyo3(from_py_with = options::max_iterations)] max_iterations: Option<usize>,
     ) -> PyResult<Py<PyAny>> {
-        let data = Data::new(points, parameters, boundary)?;
+        let input = CurveInput::new(points, parameters, boundary, closed, repeated)?;
         let search = Searching { criteria, strategy, step, max_iterations }.options(
             coplanarity,
             collinearity,
             tolerance,
         )?;
-        preserve(class.py(), data, &Request::from(&search), |polygon, go_on| {
+        preserve(class.py(), input, &Request::from(&search), |polygon, go_on| {
             nu::NuSpline::shape_preserving_with(polygon, &search, &mut |_| go_on())
         })
     }

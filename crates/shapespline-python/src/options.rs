@@ -4,7 +4,7 @@ use pyo3::{exceptions::PyTypeError, prelude::*};
 use shapespline::{
     catmull_rom::Continuity,
     criteria::{Criteria, Criterion, Tolerances},
-    geometry::{Boundary, Dimension, Parametrization, Side},
+    geometry::{Boundary, Dimension, InputError, InputMap, Parametrization, Repeated, Side},
     search::{SearchOptions, Strategy, Tension},
     tension::TensionSpline,
 };
@@ -91,6 +91,20 @@ pub(crate) enum Spacing {
 pub(crate) fn by(object: &Bound<'_, PyAny>) -> PyResult<Spacing> {
     let ways = [("parameter", Spacing::Parameter), ("arc-length", Spacing::ArcLength)];
     choose("by", &name("by", object)?, &ways)
+}
+
+pub(crate) fn repeated(object: &Bound<'_, PyAny>) -> PyResult<Repeated> {
+    let ways = [("error", Repeated::Error), ("drop", Repeated::Drop)];
+    choose("repeated", &name("repeated", object)?, &ways)
+}
+
+/// `closed`: Python's bool or NumPy's.
+pub(crate) fn closed(object: &Bound<'_, PyAny>) -> PyResult<bool> {
+    object.extract::<bool>().map_err(|error| {
+        reworded(object.py(), error, |_| {
+            PyTypeError::new_err(format!("closed must be True or False, got {}", kind(object)))
+        })
+    })
 }
 
 // Plain numbers: pyo3 tells a converter the value, not the argument it is for.
@@ -207,6 +221,19 @@ impl<'py> FromPyObject<'_, 'py> for NodalTension {
 impl NodalTension {
     pub(crate) const NONE: Self = Self(Numbers::One(0.0));
 
+    /// The tension of the nodes, from that of the points.
+    ///
+    /// # Errors
+    /// Another number of values than of points.
+    pub(crate) fn at_nodes(self, map: &InputMap) -> Result<Self, InputError> {
+        Ok(match self.0 {
+            Numbers::Many(values) if !map.is_plain() => {
+                Self(Numbers::Many(map.node_values("tension", &values)?))
+            }
+            numbers => Self(numbers),
+        })
+    }
+
     pub(crate) fn tension(&self) -> Tension<'_> {
         match &self.0 {
             Numbers::One(value) => Tension::Uniform(*value),
@@ -218,16 +245,27 @@ impl NodalTension {
 /// `boundary`: a name or end tangents.
 #[derive(Clone, Copy)]
 pub(crate) enum Ends {
+    /// None is given: natural ends, or periodic ones for closed data.
+    Default,
     Named(Boundary),
     Tangents(Tangents),
 }
 
 impl Ends {
-    pub(crate) const ZERO_CURVATURE: Self = Self::Named(Boundary::ZeroCurvature);
-
-    /// The boundary for points of a dimension.
-    pub(crate) fn of(self, dimension: Dimension) -> PyResult<Boundary> {
+    /// The boundary for points of a dimension, whose first point may also be their last.
+    pub(crate) fn of(self, dimension: Dimension, closed: bool) -> PyResult<Boundary> {
         match self {
+            Self::Default if closed => Ok(Boundary::Periodic),
+            Self::Default => Ok(Boundary::ZeroCurvature),
+            Self::Named(Boundary::Periodic) => Ok(Boundary::Periodic),
+            _ if closed => {
+                let name = match self {
+                    Self::Named(Boundary::Circular) => "circular",
+                    Self::Named(_) => "natural",
+                    _ => "Tangents",
+                };
+                Err(must("boundary", &[], "be 'periodic' with closed=True", name))
+            }
             Self::Named(boundary) => Ok(boundary),
             Self::Tangents(tangents) if tangents.dimension == dimension => Ok(tangents.boundary()),
             Self::Tangents(tangents) => {

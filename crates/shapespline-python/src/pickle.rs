@@ -5,12 +5,12 @@ use std::sync::Arc;
 use pyo3::{IntoPyObjectExt, PyClass, prelude::*, types::PyBytes};
 use serde::{Serialize, de::DeserializeOwned};
 use shapespline::geometry::{
-    self, Boundary, DVec3, DVec4, DataPolygon, Dimension, Parametrization,
+    self, Boundary, DVec3, DVec4, DataPolygon, Dimension, InputMap, Parametrization, Repeated,
 };
 use shapespline::prelude::{CatmullRom, NuSpline, TensionSpline};
 
 use crate::{
-    curve::{Curve, Family, SpaceCurve},
+    curve::{Family, Fitted, SpaceCurve},
     diagnostics::{Diagnostics, Search, SearchStep},
     error::{Value, invalid},
     fairness::Fairness,
@@ -176,28 +176,31 @@ pub(crate) fn _from_bytes<'py>(py: Python<'py>, data: &[u8]) -> PyResult<Bound<'
 
 /// Appends a curve, and how it was found.
 pub(crate) fn write_curve(
-    curve: &dyn Curve,
+    curve: &Fitted,
     search: Option<&Search>,
     bytes: Vec<u8>,
 ) -> Result<Vec<u8>, postcard::Error> {
-    curve.write(postcard::to_extend(&(curve.family(), search), bytes)?)
+    let beside = (curve.family(), search, &curve.map, curve.repeated);
+    curve.write(postcard::to_extend(&beside, bytes)?)
 }
 
-fn read_curve(bytes: &mut &[u8]) -> PyResult<(Arc<dyn Curve>, Option<Search>)> {
-    let (family, search): (Family, Option<Search>) = take(bytes)?;
-    let curve: Arc<dyn Curve> = match family {
-        Family::Nu => Arc::new(take::<NuSpline>(bytes)?),
-        Family::Tension => Arc::new(take::<TensionSpline>(bytes)?),
-        Family::CatmullRom => Arc::new(take::<CatmullRom>(bytes)?),
+fn read_curve(bytes: &mut &[u8]) -> PyResult<(Arc<Fitted>, Option<Search>)> {
+    type Beside = (Family, Option<Search>, InputMap, Repeated);
+    let (family, search, map, repeated): Beside = take(bytes)?;
+    let curve = match family {
+        Family::Nu => Fitted::new(take::<NuSpline>(bytes)?, map, repeated),
+        Family::Tension => Fitted::new(take::<TensionSpline>(bytes)?, map, repeated),
+        Family::CatmullRom => Fitted::new(take::<CatmullRom>(bytes)?, map, repeated),
     };
     // What no constructor makes would panic later.
     let points = curve.cubic().points().len();
     let lengths =
         [curve.cubic().knots().len(), curve.cubic().segments() + 1, curve.tension().len()];
-    if points < 2 || lengths.iter().any(|&length| length != points) || !curve.is_sound() {
+    let agree = lengths.iter().all(|&length| length == points) && curve.map.fits(points);
+    if points < 2 || !agree || !curve.is_sound() {
         return Err(damaged("lengths do not agree"));
     }
-    Ok((curve, search))
+    Ok((Arc::new(curve), search))
 }
 
 /// Appends a report, and the curve that it is about.
@@ -208,11 +211,11 @@ pub(crate) fn write_report(
     let own = matches!(report.subject, Subject::Own(_));
     let bytes = postcard::to_extend(&own, bytes)?;
     let bytes = match &report.subject {
-        Subject::Own(curve) => write_curve(curve.as_ref(), None, bytes)?,
-        Subject::Other { polygon, curve, interpolation } => {
+        Subject::Own(curve) => write_curve(curve, None, bytes)?,
+        Subject::Other { polygon, curve, map, interpolation } => {
             let polygon =
                 (polygon.points(), polygon.parameters(), polygon.boundary(), polygon.dimension());
-            postcard::to_extend(&(polygon, parts(curve), interpolation), bytes)?
+            postcard::to_extend(&(polygon, parts(curve), map.as_ref(), interpolation), bytes)?
         }
     };
     postcard::to_extend(&(&report.report, report.asked), bytes)
@@ -223,12 +226,16 @@ fn read_subject(bytes: &mut &[u8]) -> PyResult<Subject> {
         return Ok(Subject::Own(read_curve(bytes)?.0));
     }
     type Polygon = (Vec<DVec3>, Vec<f64>, Boundary, Dimension);
-    let (polygon, curve, interpolation): (Polygon, Parts, f64) = take(bytes)?;
+    let (polygon, curve, map, interpolation): (Polygon, Parts, InputMap, f64) = take(bytes)?;
     let (points, parameters, boundary, dimension) = polygon;
     let parameters = Parametrization::Given(parameters);
     let polygon = DataPolygon::with_dimension(points, dimension, &parameters, boundary);
     let polygon = Arc::new(polygon.map_err(damaged)?);
-    Ok(Subject::Other { polygon, curve: Arc::new(assemble(curve)?), interpolation })
+    if !map.fits(polygon.points().len()) {
+        return Err(damaged("lengths do not agree"));
+    }
+    let (curve, map) = (Arc::new(assemble(curve)?), Arc::new(map));
+    Ok(Subject::Other { polygon, curve, map, interpolation })
 }
 
 /// A piecewise Bézier curve: breaks, homogeneous control points, degree, rational, dimension.

@@ -10,14 +10,15 @@ use shapespline::{
         curve_inflections_with, polygon_inflections_from, polygon_inflections_with, polygon_shape,
     },
     geometry::{
-        self, Boundary, Coordinates, DVec3, DVec4, DataPolygon, Dimension, Parametrization,
-        normalize,
+        self, Boundary, Coordinates, DVec3, DVec4, DataPolygon, Dimension, InputPoints,
+        Parametrization, Repeated, normalize,
     },
 };
 
 use crate::{
     asked::{Asked, Given},
-    error::{Value, input_error, invalid, must, subject_error},
+    error::{Value, input_error, invalid, must, plain_error, subject_error},
+    fit::CurveInput,
     input::{Numbers, Points, numbers},
     options::{self, CriteriaNames, Ends, Parameters},
     output::{vector, vectors},
@@ -38,6 +39,8 @@ pub(crate) fn _check_shape(
     curve: &Bound<'_, PiecewiseBezier>,
     parameters: Option<Parameters>,
     boundary: Option<Ends>,
+    #[pyo3(from_py_with = options::closed)] closed: bool,
+    #[pyo3(from_py_with = options::repeated)] repeated: Repeated,
     criteria: CriteriaNames,
     #[pyo3(from_py_with = options::optional_coplanarity)] coplanarity: Option<f64>,
     #[pyo3(from_py_with = options::optional_collinearity)] collinearity: Option<f64>,
@@ -52,41 +55,64 @@ pub(crate) fn _check_shape(
         let [points, curve] = [dimension, curve.dimension()].map(Dimension::len);
         return Err(subject_error(CurveError::Dimension { points, curve }));
     }
-    let parametrization = match parameters {
-        Some(given) => given.0,
-        None if curve.breaks().len() == points.len() => {
-            Parametrization::Given(curve.breaks().to_vec())
-        }
-        None => {
-            let text = format!(
-                "parameters must be given: the curve has {} breaks, but there are {} points",
-                curve.breaks().len(),
-                points.len()
-            );
-            return Err(invalid("parameters", &[], Value::Nothing, text));
-        }
+    let given = boundary.map(|ends| ends.of(dimension, closed)).transpose()?;
+    let boundary = if closed { Some(given.unwrap_or(Boundary::Periodic)) } else { given };
+    let at_breaks = parameters.is_none();
+    let input = InputPoints {
+        points,
+        dimension,
+        // Until the points that stay are known, and the breaks held against them.
+        parametrization: parameters.map_or(Parametrization::Uniform, |given| given.0),
+        boundary: boundary.unwrap_or(Boundary::ZeroCurvature),
+        closed,
+        repeated,
     };
-    let boundary = boundary.map(|ends| ends.of(dimension)).transpose()?;
-    let count = points.len();
+    let (mut kept, map) = input.kept().map_err(input_error)?;
+    if at_breaks {
+        kept.parametrization = breaks_as_parameters(&curve, kept.points.len(), closed)?;
+    }
+    let (count, map) = (kept.points.len(), Arc::new(map));
     let make = || {
         let polygon = |points: Vec<DVec3>, boundary: Boundary| {
-            DataPolygon::with_dimension(points, dimension, &parametrization, boundary)
+            DataPolygon::with_dimension(points, dimension, &kept.parametrization, boundary)
         };
         let boundary = match boundary {
             Some(boundary) => boundary,
             None => {
                 // The parameters first: where the curve closes is asked of it at the first and the last.
-                let open = polygon(points.clone(), Boundary::ZeroCurvature)?;
-                let closed = closes_smoothly(&curve, &points, open.parameters());
+                let open = polygon(kept.points.clone(), Boundary::ZeroCurvature)?;
+                let closed = closes_smoothly(&curve, &kept.points, open.parameters());
                 if closed { Boundary::Periodic } else { Boundary::ZeroCurvature }
             }
         };
-        polygon(points, boundary)
+        polygon(kept.points.clone(), boundary)
     };
-    let polygon = detached(py, count, make).map_err(input_error)?;
+    let polygon = detached(py, count, make).map_err(|error| input_error(map.in_input(error)))?;
     let interpolation = INTERPOLATION.max(asked.tolerances.zero);
-    let subject = Subject::Other { polygon: Arc::new(polygon), curve, interpolation };
+    let subject = Subject::Other { polygon: Arc::new(polygon), curve, map, interpolation };
     ShapeReport::make(py, subject, asked)
+}
+
+/// The breaks of a curve as the parameters of so many points.
+fn breaks_as_parameters(
+    curve: &geometry::PiecewiseBezier,
+    points: usize,
+    closed: bool,
+) -> PyResult<Parametrization> {
+    let breaks = curve.breaks();
+    if breaks.len() == points {
+        return Ok(Parametrization::Given(breaks.to_vec()));
+    }
+    let remedy = if !closed && breaks.len() == points + 1 {
+        "; pass closed=True where it returns to the first point"
+    } else {
+        ""
+    };
+    let text = format!(
+        "parameters must be given: the curve has {} breaks, but there are {points} points{remedy}",
+        breaks.len(),
+    );
+    Err(invalid("parameters", &[], Value::Nothing, text))
 }
 
 /// Whether the last point is the first, and the curve goes on there in the direction it began with.
@@ -162,7 +188,7 @@ pub(crate) fn _polygon_inflections<'py>(
             interruptible(py, ALL, |go_on| polygon_inflections_with(&points, dimension, go_on))?
         }
     };
-    finished(py, count.map_err(input_error)?)
+    finished(py, count.map_err(plain_error)?)
 }
 
 #[pyfunction]
@@ -178,7 +204,7 @@ pub(crate) fn _curve_inflections<'py>(
         }
         None => interruptible(py, ALL, |go_on| Ok(curve_inflections_with(curve, go_on)))?,
     };
-    finished(py, count.map_err(input_error)?)
+    finished(py, count.map_err(plain_error)?)
 }
 
 /// A count that was broken off came with an exception, which is raised before this.
@@ -193,28 +219,34 @@ pub(crate) fn _polygon_shape<'py>(
     py: Python<'py>,
     points: Points,
     parameters: Parameters,
-    boundary: Ends,
+    boundary: Option<Ends>,
+    #[pyo3(from_py_with = options::closed)] closed: bool,
+    #[pyo3(from_py_with = options::repeated)] repeated: Repeated,
     #[pyo3(from_py_with = options::tolerance)] tolerance: f64,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let Points { points, dimension } = points;
-    let boundary = boundary.of(dimension)?;
+    let CurveInput(input) =
+        CurveInput::new(points, parameters, boundary.unwrap_or(Ends::Default), closed, repeated)?;
     let tolerances = Tolerances { zero: tolerance, ..Tolerances::default() };
     let tolerances = tolerances.validate().map_err(input_error)?;
-    let made = detached(py, points.len(), || {
-        let polygon = DataPolygon::with_dimension(points, dimension, &parameters.0, boundary)?;
-        Ok((polygon_shape(&polygon, &tolerances), polygon))
+    let dimension = input.dimension;
+    let made = detached(py, input.points.len(), || {
+        let (polygon, map) = input.polygon()?;
+        Ok((polygon_shape(&polygon, &tolerances), polygon, map))
     });
-    let (shape, polygon) = made.map_err(input_error)?;
-    let calls: Vec<Vec<&str>> =
-        shape.calls.iter().map(|calls| calls.iter().map(|c| c.name()).collect()).collect();
+    let (shape, polygon, map) = made.map_err(input_error)?;
+    let calls = shape.calls.iter().map(|calls| calls.iter().map(|c| c.name()).collect());
+    let calls: Vec<Vec<&str>> = calls.collect();
+    let floats = |values| PyArray1::from_vec(py, values);
     let parts = PyDict::new(py);
-    parts.set_item("points", vectors(py, polygon.points(), dimension)?)?;
-    parts.set_item("parameters", PyArray1::from_slice(py, polygon.parameters()))?;
+    parts.set_item("points", vectors(py, &map.points(polygon.points()), dimension)?)?;
+    parts.set_item("parameters", floats(map.spread(polygon.parameters())))?;
     parts.set_item("extent", shape.extent.name())?;
-    parts.set_item("chords", vectors(py, &shape.chords, dimension)?)?;
-    parts.set_item("binormals", vectors(py, &shape.binormals, Dimension::Three)?)?;
-    parts.set_item("turning_angles", PyArray1::from_vec(py, shape.turning_angles))?;
-    parts.set_item("torsion", PyArray1::from_vec(py, shape.torsion))?;
-    parts.set_item("calls", calls.into_bound_py_any(py)?)?;
+    let chords = map.spread_segments(&shape.chords, &DVec3::ZERO);
+    parts.set_item("chords", vectors(py, &chords, dimension)?)?;
+    let binormals = map.spread(&shape.binormals);
+    parts.set_item("binormals", vectors(py, &binormals, Dimension::Three)?)?;
+    parts.set_item("turning_angles", floats(map.spread(&shape.turning_angles)))?;
+    parts.set_item("torsion", floats(map.spread_segments(&shape.torsion, &f64::NAN)))?;
+    parts.set_item("calls", map.spread_segments(&calls, &Vec::new()).into_bound_py_any(py)?)?;
     Ok(parts)
 }

@@ -7,14 +7,14 @@ use pyo3::{
     types::{PyList, PyTuple, PyType},
 };
 use shapespline::{
-    geometry::{self, Side},
+    geometry::{self, InputError, InputMap, Repeated, Side},
     tension::{self, Strategy, TangentScale},
 };
 
 use crate::{
     curve::SpaceCurve,
     error::must,
-    fit::{Data, Request, Searching, build, preserve},
+    fit::{CurveInput, Request, Searching, build, preserve},
     input::{Numbers, Points, Query, array, numbers},
     options::{self, CriteriaNames, Ends, Method, Parameters},
 };
@@ -63,6 +63,30 @@ impl<'py> FromPyObject<'_, 'py> for Scale {
 impl Scale {
     pub(crate) const NONE: Self = Self::Nodes(Numbers::One(1.0));
 
+    /// The scales of the nodes and segments, from those of the points and their segments.
+    ///
+    /// # Errors
+    /// Another number of values.
+    fn at_nodes(self, map: &InputMap) -> Result<Self, InputError> {
+        if map.is_plain() {
+            return Ok(self);
+        }
+        let of_segments = |argument, numbers| match numbers {
+            Numbers::Many(values) => map.segment_values(argument, &values).map(Numbers::Many),
+            one => Ok(one),
+        };
+        Ok(match self {
+            Self::Nodes(Numbers::Many(values)) => {
+                Self::Nodes(Numbers::Many(map.node_values("tangent_scale", &values)?))
+            }
+            Self::Segments([starts, ends]) => Self::Segments([
+                of_segments("tangent_scale[0]", starts)?,
+                of_segments("tangent_scale[1]", ends)?,
+            ]),
+            one => one,
+        })
+    }
+
     /// Calls `make` with what the crate of the family takes.
     pub(crate) fn with<T>(&self, segments: usize, make: impl FnOnce(TangentScale<'_>) -> T) -> T {
         match self {
@@ -91,6 +115,15 @@ impl Scale {
 /// boundary : {"natural", "zero-curvature", "periodic", "circular"} or Tangents
 ///     No second derivative at both ends (two names); closed data, whose last point is the first; end
 ///     tangents of the circles through the first and the last three points; or given end tangents.
+/// closed : bool
+///     Whether the first point is also the last, repeated or not: periodic ends, and no other. Arrays of
+///     parameters then have one entry more, for the return to the first point, unless the points repeat
+///     it; so have ``points`` and all other attributes.
+/// repeated : {"error", "drop"}
+///     What becomes of points that equal the one before them, or are given its parameter: they are
+///     refused, or left out. Indices and arrays refer to the points as given in either case;
+///     ``diagnostics.dropped`` lists the points that were left out, and ``bezier`` and ``knots`` know
+///     nothing of them.
 /// tangent_scale : float, array_like of shape (n,), or pair of array_like of shape (n - 1,)
 ///     λ in (0, 1], without unit: 1 gives the C² cubic spline, and smaller λ pull the curve to the
 ///     polygon. One number, one a point, or (λ⁰, λ¹): one at the start and one at the end of each
@@ -139,22 +172,29 @@ impl TensionSpline {
             points,
             parameters=Parameters::CHORDAL,
             *,
-            boundary=Ends::ZERO_CURVATURE,
+            boundary=Ends::Default,
+            closed=false,
+            repeated=Repeated::Error,
             tangent_scale=Scale::NONE,
         ),
-        text_signature = "(points, parameters='chordal', *, boundary='natural', tangent_scale=1.0)"
+        text_signature = "(points, parameters='chordal', *, boundary='natural', closed=False, repeated='error', tangent_scale=1.0)"
     )]
+    // One argument a keyword: this is the signature that users see.
+    #[allow(clippy::too_many_arguments)]
     fn new(
         py: Python<'_>,
         points: Points,
         parameters: Parameters,
         boundary: Ends,
+        #[pyo3(from_py_with = options::closed)] closed: bool,
+        #[pyo3(from_py_with = options::repeated)] repeated: Repeated,
         tangent_scale: Scale,
     ) -> PyResult<PyClassInitializer<Self>> {
-        let data = Data::new(points, parameters, boundary)?;
-        let base = build(py, data, |polygon| {
+        let input = CurveInput::new(points, parameters, boundary, closed, repeated)?;
+        let base = build(py, input, |polygon, map| {
             let segments = polygon.segments();
-            tangent_scale.with(segments, |scale| tension::TensionSpline::new(polygon, scale))
+            let scale = tangent_scale.at_nodes(map)?;
+            scale.with(segments, |scale| tension::TensionSpline::new(polygon, scale))
         })?;
         Ok(PyClassInitializer::from(base).add_subclass(Self))
     }
@@ -172,6 +212,8 @@ impl TensionSpline {
     ///     Parameters of the points, as for `TensionSpline`.
     /// boundary : {"natural", "zero-curvature", "periodic", "circular"} or Tangents
     ///     End conditions, as for `TensionSpline`.
+    /// closed, repeated
+    ///     As for `TensionSpline`.
     /// criteria : str or iterable of str, optional
     ///     What to keep: any of ``"convexity"``, ``"inflection"``, ``"turning"``, ``"torsion"``,
     ///     ``"coplanarity"``, ``"collinearity"``, ``"global-convexity"`` and ``"regular"``; default all
@@ -227,7 +269,9 @@ impl TensionSpline {
             points,
             parameters=Parameters::CHORDAL,
             *,
-            boundary=Ends::ZERO_CURVATURE,
+            boundary=Ends::Default,
+            closed=false,
+            repeated=Repeated::Error,
             criteria=CriteriaNames::DEFAULT,
             strategy=Strategy::Fairest,
             step=None,
@@ -236,8 +280,7 @@ impl TensionSpline {
             tolerance=1e-9,
             max_iterations=None,
         ),
-        text_signature = "($type, points, parameters='chordal', *, boundary='natural', \
-                          criteria=None, strategy='fairest', step=None, coplanarity=0.2, \
+        text_signature = "($type, points, parameters='chordal', *, boundary='natural', closed=False, repeated='error', criteria=None, strategy='fairest', step=None, coplanarity=0.2, \
                           collinearity=0.2, tolerance=1e-9, max_iterations=None)"
     )]
     // One argument a keyword: this is the signature that users see.
@@ -247,6 +290,8 @@ impl TensionSpline {
         points: Points,
         parameters: Parameters,
         boundary: Ends,
+        #[pyo3(from_py_with = options::closed)] closed: bool,
+        #[pyo3(from_py_with = options::repeated)] repeated: Repeated,
         criteria: CriteriaNames,
         #[pyo3(from_py_with = options::strategy)] strategy: Strategy,
         #[pyo3(from_py_with = options::optional_step)] step: Option<f64>,
@@ -255,14 +300,14 @@ impl TensionSpline {
         #[pyo3(from_py_with = options::tolerance)] tolerance: f64,
         #[pyo3(from_py_with = options::max_iterations)] max_iterations: Option<usize>,
     ) -> PyResult<Py<PyAny>> {
-        let data = Data::new(points, parameters, boundary)?;
+        let input = CurveInput::new(points, parameters, boundary, closed, repeated)?;
         let step = step.unwrap_or_else(|| Method::Tension.default_step(strategy));
         let search = Searching { criteria, strategy, step, max_iterations }.options(
             coplanarity,
             collinearity,
             tolerance,
         )?;
-        preserve(class.py(), data, &Request::from(&search), |polygon, go_on| {
+        preserve(class.py(), input, &Request::from(&search), |polygon, go_on| {
             tension::TensionSpline::shape_preserving_with(polygon, &search, &mut |_| go_on())
         })
     }
@@ -283,6 +328,7 @@ impl TensionSpline {
         let base = slf.as_super().get();
         let curve = base.curve.as_any().downcast_ref::<tension::TensionSpline>();
         let pairs = curve.map_or(&[][..], tension::TensionSpline::tangent_scale);
+        let pairs = base.curve.map.spread_segments(pairs, &[f64::NAN; 2]);
         let side = |k: usize| PyArray1::from_iter(slf.py(), pairs.iter().map(|pair| pair[k]));
         (side(0), side(1))
     }

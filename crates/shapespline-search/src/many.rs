@@ -1,7 +1,10 @@
 //! Many curves at once: streamlines, tool paths, tracks.
 
+use std::{borrow::Cow, ops::Range};
+
 use shapespline_geometry::{
-    Boundary, DVec3, DataPolygon, Dimension, InputError, Parametrization, Ragged,
+    Boundary, DVec3, DataPolygon, Dimension, InputError, InputMap, InputPoints, Parametrization,
+    Ragged, Repeated, ends_agree,
 };
 
 use crate::FitError;
@@ -13,48 +16,65 @@ pub struct Collection<'a> {
     pub points: Ragged<'a, DVec3>,
     /// Planar (third coordinates zero) or spatial.
     pub dimension: Dimension,
-    /// How parameters are chosen; given ones hold one a point of the whole collection.
+    /// How parameters are chosen; given ones hold those of all curves, one after the other.
     pub parametrization: Parametrization,
     /// The end conditions of every curve.
     pub boundary: Boundary,
+    /// Whether the first point of every curve is also its last, as for [`InputPoints::closed`].
+    pub closed: bool,
+    /// What is done about repeated points.
+    pub repeated: Repeated,
 }
 
 impl Collection<'_> {
-    /// Sees to it that given parameters are one a point.
+    /// Checks that given parameters are as many as the curves need, and returns where those of each curve
+    /// lie; the ranges are those of the points unless closed curves have one more.
     ///
     /// # Errors
-    /// Given parameters that are not.
-    pub fn check(&self) -> Result<(), InputError> {
-        let Parametrization::Given(all) = &self.parametrization else { return Ok(()) };
-        let rows = &self.points;
-        let expected = if rows.is_empty() { 0 } else { rows.range(rows.len() - 1).end };
-        if all.len() == expected {
-            return Ok(());
+    /// Another number of given parameters.
+    pub fn check(&self) -> Result<Vec<Range<usize>>, InputError> {
+        let Parametrization::Given(all) = &self.parametrization else { return Ok(Vec::new()) };
+        let mut end = 0;
+        let range = |k: usize| {
+            let row = self.points.row(k);
+            let start = end;
+            end += row.len() + usize::from(self.closed && row.len() > 1 && !ends_agree(row));
+            start..end
+        };
+        let ranges: Vec<Range<usize>> = (0..self.points.len()).map(range).collect();
+        let (expected, found) = (end, all.len());
+        if found == expected {
+            return Ok(ranges);
         }
-        let (argument, found, per) = ("parameters", all.len(), "one for each point");
-        Err(InputError::Length { argument, expected, found, per })
+        let per = match self.closed {
+            true => "one for each point, and one for each return to a first point",
+            false => "one for each point",
+        };
+        Err(InputError::Length { argument: "parameters", expected, found, per })
     }
 
-    /// Fits curve `k` of a collection that was [checked](Self::check).
+    /// Fits curve `k` of a collection; `ranges` are those of its [check](Self::check).
     ///
     /// # Errors
     /// Points that make no polygon; those of `fit`.
     pub fn fit<C>(
         &self,
         k: usize,
-        fit: impl FnOnce(DataPolygon) -> Result<C, FitError>,
+        ranges: &[Range<usize>],
+        fit: impl FnOnce(DataPolygon, InputMap) -> Result<C, FitError>,
     ) -> Result<C, FitError> {
-        let given;
         let parametrization = match &self.parametrization {
-            // Each curve has its part; a whole of another length is refused before.
             Parametrization::Given(all) => {
-                given = Parametrization::Given(all[self.points.range(k)].to_vec());
-                &given
+                Cow::Owned(Parametrization::Given(all[ranges[k].clone()].to_vec()))
             }
-            chosen => chosen,
+            chosen => Cow::Borrowed(chosen),
         };
         let points = self.points.row(k).to_vec();
-        fit(DataPolygon::with_dimension(points, self.dimension, parametrization, self.boundary)?)
+        let Self { dimension, boundary, closed, repeated, .. } = *self;
+        let parametrization = parametrization.into_owned();
+        let input = InputPoints { points, dimension, parametrization, boundary, closed, repeated };
+        let (polygon, map) = input.polygon()?;
+        fit(polygon, map)
     }
 }
 
@@ -65,12 +85,12 @@ impl Collection<'_> {
 /// depend on the number of threads.
 ///
 /// # Errors
-/// Zero threads; given parameters that are not one a point.
+/// Zero threads; given parameters that are not as many as the points.
 pub fn fit_many<C: Send>(
     collection: &Collection<'_>,
     threads: Option<usize>,
     fit: impl Fn(DataPolygon) -> Result<C, FitError> + Sync,
 ) -> Result<Vec<Result<C, FitError>>, InputError> {
-    collection.check()?;
-    collection.points.map(threads, |k, _| collection.fit(k, &fit))
+    let ranges = collection.check()?;
+    collection.points.map(threads, |k, _| collection.fit(k, &ranges, |polygon, _| fit(polygon)))
 }

@@ -90,6 +90,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         dimension: Dimension::Three,
         parametrization: Parametrization::Centripetal,
         boundary: Boundary::ZeroCurvature,
+        closed: false,
+        repeated: Repeated::Error,
     };
     let tension = TensionSpline::options();
     let many = [

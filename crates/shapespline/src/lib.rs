@@ -57,7 +57,7 @@ pub mod prelude {
     pub use shapespline_fair::{Energy, FairOptions, FairSpline};
     pub use shapespline_geometry::{
         ArcLength, Boundary, Curve, DVec3, DataPolygon, Dimension, Parametrization, PiecewiseCubic,
-        Ragged, Side,
+        Ragged, Repeated, Side,
     };
     pub use shapespline_monotone::{
         MonotoneQuartic, MonotoneQuintic, QuarticOptions, QuinticOptions,

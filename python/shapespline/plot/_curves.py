@@ -22,7 +22,7 @@ __all__ = ["curvature", "curvature_comb", "curve", "torsion"]
 
 def _inside(c: SpaceCurve, samples: int) -> Floats:
     """Return parameters in every segment, both ends a hair inside: (segments, samples)."""
-    u = c.parameters
+    u = c.knots
     # Inside, for at a knot torsion has two values, and at an end with no curvature none.
     t = np.linspace(1e-6, 1 - 1e-6, samples)
     inside: Floats = u[:-1, None] + np.diff(u)[:, None] * t
@@ -50,7 +50,7 @@ def _discrete_curvature(c: SpaceCurve) -> Floats:
 
     It is 2 ‖P‖ / (‖L‖ ‖L'‖ ‖L + L'‖), and NaN too where the polygon turns back on itself.
     """
-    points = c.points
+    points = c(c.knots)
     if c.boundary == "periodic":
         points = np.vstack([points[-2:-1], points, points[1:2]])
     # Over the extent of the points, so that products of their lengths neither over- nor underflow.
@@ -110,7 +110,7 @@ def curve(
     if points:
         polygon = c.points.T
         ax.plot(*polygon, color=DATA, linewidth=0.7, marker="o", markersize=2.5, zorder=1)
-    u = c.parameters
+    u = c.knots
     t = u[:-1, None] + np.diff(u)[:, None] * np.linspace(0, 1, samples, endpoint=False)
     position = c(np.append(t.ravel(), u[-1])).T
     ax.plot(*position, color=color, linestyle=linestyle, linewidth=1.4, label=label, zorder=2)
@@ -246,7 +246,7 @@ def curvature(
     u = _inside(c, samples)
     if data:
         ax.plot(
-            c.parameters,
+            c.knots,
             _discrete_curvature(c),
             color=DATA,
             linestyle="",
@@ -316,7 +316,7 @@ def torsion(
         # One artist, however many segments: a bar each would take minutes on a long curve.
         ax.stairs(
             np.nan_to_num(discrete),
-            c.parameters,
+            c.knots,
             fill=True,
             color=DATA,
             alpha=0.35,

@@ -311,6 +311,8 @@ fn many_curves_at_once_are_the_curves_one_by_one_and_faults_stay_alone() {
         dimension: Dimension::Three,
         parametrization: Parametrization::Centripetal,
         boundary: Boundary::ZeroCurvature,
+        closed: false,
+        repeated: Repeated::Error,
     };
     for family in Family::DEFAULTS {
         let fits = |threads| fit_many(&collection, threads, |p| family.try_fit(p)).unwrap();

@@ -4,7 +4,7 @@ use numpy::PyArray1;
 use pyo3::{prelude::*, types::PyDict};
 use shapespline::{
     criteria::Criterion,
-    geometry::{Boundary, Dimension},
+    geometry::{Boundary, Dimension, Repeated},
 };
 
 use super::SpaceCurve;
@@ -55,10 +55,13 @@ impl SpaceCurve {
     ///        [1., 2.]])
     #[getter]
     fn points<'py>(&self, py: Python<'py>) -> PyResult<FloatArray<'py>> {
-        vectors(py, self.curve.cubic().points(), self.curve.cubic().dimension())
+        let points = self.curve.map.points(self.curve.cubic().points());
+        vectors(py, &points, self.curve.cubic().dimension())
     }
 
-    /// The parameters of the points, strictly increasing, shape (n,); a fresh array.
+    /// The parameters of the points, increasing, shape (n,); a fresh array.
+    ///
+    /// A point that was left out (``repeated="drop"``) has the parameter of the point it repeats.
     ///
     /// Examples
     /// --------
@@ -67,6 +70,21 @@ impl SpaceCurve {
     /// array([0., 5., 6.])
     #[getter]
     fn parameters<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        PyArray1::from_vec(py, self.curve.of_points(self.curve.cubic().knots()))
+    }
+
+    /// The parameters at which the pieces of the curve meet, strictly increasing; a fresh array.
+    ///
+    /// Those of the points, but for points that were left out: one more than ``bezier`` has pieces.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import shapespline as ss
+    /// >>> curve = ss.NuSpline([[0, 0], [3, 4], [3, 4], [3, 5]], repeated="drop")
+    /// >>> curve.knots, curve.parameters
+    /// (array([0., 5., 6.]), array([0., 5., 5., 6.]))
+    #[getter]
+    fn knots<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         PyArray1::from_slice(py, self.curve.cubic().knots())
     }
 
@@ -81,7 +99,8 @@ impl SpaceCurve {
     ///        [0.6, 0.8]])
     #[getter]
     fn tangents<'py>(&self, py: Python<'py>) -> PyResult<FloatArray<'py>> {
-        vectors(py, &self.curve.tangents(), self.curve.cubic().dimension())
+        let tangents = self.curve.of_points(&self.curve.tangents());
+        vectors(py, &tangents, self.curve.cubic().dimension())
     }
 
     /// The tension at each point, shape (n,), without unit: 0 is none, and more of it pulls the curve
@@ -98,7 +117,7 @@ impl SpaceCurve {
     /// array([2., 2., 2.])
     #[getter]
     fn tension<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        PyArray1::from_slice(py, self.curve.tension())
+        PyArray1::from_vec(py, self.curve.of_points(self.curve.tension()))
     }
 
     /// The end conditions: ``"zero-curvature"``, ``"periodic"``, ``"circular"`` or a `Tangents`.
@@ -113,7 +132,8 @@ impl SpaceCurve {
         boundary_object(py, self.curve.boundary(), self.curve.cubic().dimension())
     }
 
-    /// What the search for tension took, a `Diagnostics`; ``None`` for a curve of given tension.
+    /// What the search for tension took and which points were left out, a `Diagnostics`; ``None`` for a
+    /// curve of given tension, unless it was made with ``repeated="drop"``.
     ///
     /// Examples
     /// --------
@@ -122,7 +142,11 @@ impl SpaceCurve {
     /// 'solved'
     #[getter]
     fn diagnostics(&self) -> Option<Diagnostics> {
-        self.search.as_ref().map(|search| Diagnostics::from(&search.diagnostics))
+        let dropped = self.curve.map.dropped();
+        match &self.search {
+            Some(search) => Some(Diagnostics::of(&search.diagnostics, dropped)),
+            None => (self.curve.repeated == Repeated::Drop).then(|| Diagnostics::given(dropped)),
+        }
     }
 
     /// The steps of the search for tension, a list of `SearchStep`; ``None`` for a curve of given

@@ -25,7 +25,7 @@ impl SpaceCurve {
         shape: &[usize],
         of: impl Fn(&dyn Curve, f64) -> [f64; COLUMNS] + Send + Sync,
     ) -> PyResult<FloatArray<'py>> {
-        let curve = self.curve.as_ref();
+        let curve: &dyn Curve = &**self.curve;
         let row = |(row, &u): (&mut [f64; COLUMNS], &f64)| *row = of(curve, u);
         filled(py, shape, |out| {
             let rows = out.as_chunks_mut().0;
@@ -48,7 +48,7 @@ impl SpaceCurve {
         of: impl Fn(&dyn Curve, f64) -> f64 + Send + Sync,
     ) -> PyResult<Bound<'py, PyAny>> {
         match u {
-            Query::One(u) => of(self.curve.as_ref(), *u).into_bound_py_any(py),
+            Query::One(u) => of(&**self.curve, *u).into_bound_py_any(py),
             Query::Many(u) => {
                 let of = |curve: &dyn Curve, u| [of(curve, u)];
                 Ok(self.rows(py, u.values(), u.shape(), of)?.into_any())
@@ -65,7 +65,7 @@ impl SpaceCurve {
         of: impl Fn(&dyn Curve, f64) -> DVec3 + Send + Sync,
     ) -> PyResult<FloatArray<'py>> {
         match u {
-            Query::One(u) => Ok(vector(py, of(self.curve.as_ref(), *u), columns)),
+            Query::One(u) => Ok(vector(py, of(&**self.curve, *u), columns)),
             Query::Many(u) => {
                 let (values, shape) = (u.values(), with_columns(u.shape(), columns));
                 if columns == 2 {

@@ -9,7 +9,6 @@ use std::{any::Any, fmt::Debug, sync::Arc};
 use pyo3::{PyClass, PyClassInitializer, exceptions::PyTypeError, prelude::*};
 use shapespline::{
     catmull_rom::CatmullRom,
-    criteria::{Record, ShapeReport},
     geometry::{self, Boundary, DVec3, DataPolygon, InputError, PiecewiseCubic, Side},
     nu::NuSpline,
     search::Interpolant,
@@ -27,9 +26,11 @@ use crate::{
 mod attributes;
 mod evaluate;
 mod export;
+mod fitted;
 mod measure;
 
 pub(crate) use attributes::boundary_object;
+pub(crate) use fitted::{Fitted, in_input};
 
 /// The families, by the numbers that pickles hold: append only.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
@@ -126,12 +127,6 @@ impl<C: Member> Curve for C {
 }
 
 impl dyn Curve + '_ {
-    /// A record with its location in the curve's own parameter: the checker sees the image alone,
-    /// run through linearly on each segment.
-    pub(crate) fn located(&self, record: Record) -> Record {
-        Record { location: self.own_parameter(record.location), ..record }
-    }
-
     /// The curve's own parameter where the image, run through linearly on each segment, has `u`.
     pub(crate) fn own_parameter(&self, u: f64) -> f64 {
         if self.family() != Family::Tension || !u.is_finite() {
@@ -139,14 +134,6 @@ impl dyn Curve + '_ {
         }
         let (segment, t) = self.cubic().locate(u, Side::Right);
         self.path().parameter(segment, t)
-    }
-
-    /// A report of the checker, with every location in the curve's own parameter.
-    pub(crate) fn with_locations(&self, mut report: ShapeReport) -> ShapeReport {
-        for record in &mut report.violations {
-            *record = self.located(*record);
-        }
-        report
     }
 }
 
@@ -165,12 +152,12 @@ impl dyn Curve + '_ {
 /// (2, 3)
 #[pyclass(module = "shapespline", frozen, subclass, weakref)]
 pub(crate) struct SpaceCurve {
-    pub(crate) curve: Arc<dyn Curve>,
+    pub(crate) curve: Arc<Fitted>,
     pub(crate) search: Option<Arc<Search>>,
 }
 
 impl SpaceCurve {
-    pub(crate) fn of(curve: Arc<dyn Curve>, search: Option<Search>) -> Self {
+    pub(crate) fn of(curve: Arc<Fitted>, search: Option<Search>) -> Self {
         Self { curve, search: search.map(Arc::new) }
     }
 
@@ -209,6 +196,7 @@ impl SpaceCurve {
         let curve = &slf.get().curve;
         let cubic = curve.cubic();
         let (n, knots) = (cubic.points().len(), cubic.knots());
+        let points = curve.map.count();
         let boundary = attributes::boundary_name(curve.boundary()).unwrap_or("tangents");
         let tense = curve.tension().iter().filter(|&&t| t > 0.0).count();
         let tension = match tense {
@@ -219,7 +207,7 @@ impl SpaceCurve {
             }
         };
         Ok(format!(
-            "<{}: {n} points in {}, {tension}; u from {} to {}, boundary {boundary}>",
+            "<{}: {points} points in {}, {tension}; u from {} to {}, boundary {boundary}>",
             slf.get_type().name()?,
             if cubic.dimension().len() == 2 { "the plane" } else { "space" },
             short(knots[0]),
@@ -229,7 +217,7 @@ impl SpaceCurve {
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
         pickle::reduce(py, Kind::Curve, |bytes| {
-            pickle::write_curve(self.curve.as_ref(), self.search.as_deref(), bytes)
+            pickle::write_curve(&self.curve, self.search.as_deref(), bytes)
         })
     }
 

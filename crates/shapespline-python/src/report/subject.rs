@@ -4,36 +4,46 @@ use std::sync::Arc;
 
 use shapespline::{
     criteria::{Checker, Criterion, CurveChecker, CurveError, Notes, Record, ShapeReport},
-    geometry::{DVec3, DataPolygon, PiecewiseBezier},
+    geometry::{DVec3, DataPolygon, InputMap, PiecewiseBezier},
 };
 
-use crate::{asked::Asked, curve::Curve};
+use crate::{
+    asked::Asked,
+    curve::{Fitted, in_input},
+};
 
 /// A curve beside the points that it has to follow.
 #[derive(Clone)]
 pub(crate) enum Subject {
     /// A curve with the points it was made for.
-    Own(Arc<dyn Curve>),
+    Own(Arc<Fitted>),
     /// Points, and any curve through them.
     Other {
         polygon: Arc<DataPolygon>,
         curve: Arc<PiecewiseBezier>,
+        /// Where the points stand in the input.
+        map: Arc<InputMap>,
         /// How far from the points the curve may pass, over their extent.
         interpolation: f64,
     },
 }
 
-/// A checker of either kind, for a while.
+/// A checker of either kind, for a while. Its records have the segments of the input.
 pub(crate) enum Judge<'a> {
-    Own(Checker<'a>, &'a [[DVec3; 2]], &'a dyn Curve),
-    Other(CurveChecker<'a>),
+    Own(Checker<'a>, &'a [[DVec3; 2]], &'a Fitted),
+    Other(CurveChecker<'a>, &'a InputMap),
 }
 
 impl Judge<'_> {
     pub(crate) fn report(&self) -> ShapeReport {
         match self {
             Self::Own(checker, legs, curve) => curve.with_locations(checker.report(|i| legs[i])),
-            Self::Other(checker) => checker.report(),
+            Self::Other(checker, map) => {
+                let mut report = checker.report();
+                report.violations.iter_mut().for_each(|r| r.segment = map.segment(r.segment));
+                report.undecided.iter_mut().for_each(|r| r.segment = map.segment(r.segment));
+                report
+            }
         }
     }
 
@@ -42,21 +52,32 @@ impl Judge<'_> {
             Self::Own(checker, legs, curve) => {
                 curve.located(checker.record(segment, legs[segment], criterion))
             }
-            Self::Other(checker) => checker.record(segment, criterion),
+            Self::Other(checker, map) => {
+                let record = checker.record(segment, criterion);
+                Record { segment: map.segment(segment), ..record }
+            }
         }
     }
 
     pub(crate) fn notes(&self) -> Notes {
         match self {
-            Self::Own(checker, legs, curve) => {
-                let mut notes = checker.notes(|i| legs[i]);
-                let nodes = notes.nodes.iter_mut().map(|record| &mut record.location);
-                let segments = notes.oscillations.iter_mut().map(|record| &mut record.location);
-                nodes.chain(segments).for_each(|u| *u = curve.own_parameter(*u));
-                notes
-            }
-            Self::Other(checker) => checker.notes(),
+            Self::Own(checker, legs, curve) => curve.with_places(checker.notes(|i| legs[i])),
+            Self::Other(checker, map) => in_input(map, checker.notes()),
         }
+    }
+}
+
+/// The error with the indices of the input.
+fn placed(map: &InputMap, error: CurveError) -> CurveError {
+    match error {
+        CurveError::Input(error) => CurveError::Input(map.in_input(error)),
+        CurveError::Mismatch { point, parameter, distance, allowed } => {
+            CurveError::Mismatch { point: map.node(point), parameter, distance, allowed }
+        }
+        CurveError::Domain { index, value, start, end } => {
+            CurveError::Domain { index: map.node(index), value, start, end }
+        }
+        other => other,
     }
 }
 
@@ -82,11 +103,12 @@ impl Subject {
             Self::Own(curve) => {
                 let polygon = curve.polygon()?;
                 let checker = Checker::new(&polygon, criteria, tolerances);
-                Ok(work(Judge::Own(checker, curve.cubic().legs(), curve.as_ref())))
+                Ok(work(Judge::Own(checker, curve.cubic().legs(), curve)))
             }
-            Self::Other { polygon, curve, interpolation } => {
+            Self::Other { polygon, curve, map, interpolation } => {
                 CurveChecker::new(polygon, curve, criteria, tolerances, *interpolation)
-                    .map(|checker| work(Judge::Other(checker)))
+                    .map(|checker| work(Judge::Other(checker, map)))
+                    .map_err(|error| placed(map, error))
             }
         }
     }

@@ -41,7 +41,9 @@ fn curves(bytes: &mut Bytes<'_>) {
         _ => None,
     };
     let chosen = parametrization.clone();
-    let collection = Collection { points: rows, dimension, parametrization, boundary };
+    let (closed, repeated) = (false, Repeated::Error);
+    let collection =
+        Collection { points: rows, dimension, parametrization, boundary, closed, repeated };
     let threads = [None, Some(1), Some(2), Some(0)][bytes.below(4)];
     let shape = bytes.flag();
     let fit = |polygon: DataPolygon| {
