@@ -97,6 +97,11 @@ BAD_VALUES = {
     ),
     "NaN exponent": (fit(parameters=np.nan), ["parameters", "nan"]),
     "infinite exponent": (fit(parameters=np.inf), ["parameters", "inf"]),
+    "negative exponent": (fit(parameters=-1.0), ["parameters", "exponent between 0 and 1", "-1"]),
+    "exponent out of range": (
+        fit(parameters=2**31),
+        ["parameters", "exponent between 0 and 1", "2147483648"],
+    ),
     "unknown boundary": (
         fit(boundary="clamped"),
         ["boundary", "'clamped'", "'zero-curvature'", "'natural'", "'periodic'", "'circular'"],
@@ -128,19 +133,23 @@ BAD_VALUES = {
         fit(CLOSED, boundary="periodic", tension=changed(np.zeros(N + 1), 6, 3.5)),
         ["tension[6]", "tension[0]", "3.5"],
     ),
-    "λ of zero": (scaled(0.0), ["tangent_scale", "(0, 1]", "0"]),
-    "λ above one": (scaled(1.25), ["tangent_scale", "(0, 1]", "1.25"]),
+    "λ of zero": (scaled(0.0), ["tangent_scale", "between 1e-65 and 1", "0"]),
+    "λ whose derivatives overflow": (
+        scaled(1e-310),
+        ["tangent_scale", "between 1e-65 and 1", "0.000"],
+    ),
+    "λ above one": (scaled(1.25), ["tangent_scale", "between 1e-65 and 1", "1.25"]),
     "NaN λ of a point": (
         scaled(changed(np.ones(N), 2, np.nan)),
-        ["tangent_scale[2]", "(0, 1]", "nan"],
+        ["tangent_scale[2]", "between 1e-65 and 1", "nan"],
     ),
     "negative λ⁰ of a segment": (
         scaled((changed(ONES, 3, -0.5), ONES)),
-        ["tangent_scale[0][3]", "(0, 1]", "-0.5"],
+        ["tangent_scale[0][3]", "between 1e-65 and 1", "-0.5"],
     ),
     "λ¹ of a segment above one": (
         scaled((ONES, changed(ONES, 1, 1.5))),
-        ["tangent_scale[1][1]", "(0, 1]", "1.5"],
+        ["tangent_scale[1][1]", "between 1e-65 and 1", "1.5"],
     ),
     "too few λ¹": (scaled((ONES, ONES[:-1])), ["tangent_scale[1]", "4", "5"]),
     "too many λ⁰": (scaled((np.ones(N), ONES)), ["tangent_scale[0]", "6", "5"]),
@@ -187,7 +196,7 @@ BAD_VALUES = {
     "negative step of many": (many(step=-1.0), ["step", "-1"]),
     "λ above one of many": (
         many(method="tension", shape_preserving=False, tangent_scale=2.0),
-        ["tangent_scale", "(0, 1]", "2"],
+        ["tangent_scale", "between 1e-65 and 1", "2"],
     ),
     "points of many in four dimensions": (
         lambda: ss.fit_many(np.eye(4), [0, 4]),
@@ -289,7 +298,8 @@ def test_bad_kind(name):
         fit(POINTS[:2]),
         fit(parameters=U),
         fit(parameters=0.7),
-        fit(parameters=-1.0),
+        fit(parameters=0.0),
+        fit(parameters=1.0),
         fit(CLOSED, boundary="periodic"),
         fit(CLOSED, boundary="periodic", tension=np.ones(N + 1)),
         fit(boundary="circular"),

@@ -5,7 +5,8 @@ import re
 from pathlib import Path
 
 TESTS = Path(__file__).parent
-RUST = [*TESTS.glob("rust/tests/*.rs"), *TESTS.parent.glob("crates/*/tests/*.rs")]
+RUST = [*TESTS.glob("rust/tests/*.rs"), *TESTS.parent.glob("crates/*/tests/*.rs"),
+        *TESTS.parent.glob("crates/*/src/**/*.rs")]  # fmt: skip
 PAGE = TESTS.parent / "python" / "docs" / "faults.md"
 
 

@@ -80,6 +80,43 @@ def test_weights_are_not_ignored():
     assert [(v.criterion, v.segment) for v in heavy.violations] == [("convexity", 1)]
 
 
+@pytest.mark.parametrize("weight", [1e-310, 1e-3, 0.1, 1.0, 3.0, 1e308])
+@pytest.mark.parametrize("dim", [2, 3])
+def test_equal_weights_divide_out(weight, dim, rng):
+    """The curve is polynomial then, to the last bit: nothing that it decides stays undecided."""
+    control = rng.normal(size=(30, 4, dim)).cumsum(axis=0)
+    control[1:, 0] = control[:-1, -1]
+    points = np.vstack([control[:, 0], control[-1:, -1]])
+    plain = ss.PiecewiseBezier(control, range(31))
+    equal = ss.PiecewiseBezier(control, range(31), weights=np.full((30, 4), weight))
+    assert equal.weights is None
+    np.testing.assert_array_equal(equal.control, plain.control)
+    own, other = (ss.check_shape(points, curve).to_dict() for curve in (plain, equal))
+    assert own == other
+    knots, poles = [0, 0, 0, 0, 1, 2, 2, 2, 2], rng.normal(size=(5, dim))
+    plain = ss.PiecewiseBezier.from_bspline(knots, poles, 3)
+    equal = ss.PiecewiseBezier.from_bspline(knots, poles, 3, weights=[weight] * 5)
+    assert equal.weights is None
+    np.testing.assert_array_equal(equal.control, plain.control)
+
+
+@pytest.mark.parametrize("scale", [1e-310, 1e-200, 1e-60, 1e60, 1e200, 1e306])
+def test_only_ratios_of_weights_count(scale, rng):
+    control, weights = rng.normal(size=(7, 5, 3)), rng.uniform(1, 9, (7, 5))
+    plain = ss.PiecewiseBezier(control, range(8), weights=weights)
+    scaled = ss.PiecewiseBezier(control, range(8), weights=weights * scale)
+    u = np.linspace(0, 7, 99)
+    # Subnormal weights come in with few digits.
+    np.testing.assert_allclose(scaled(u), plain(u), rtol=0, atol=1e-2 if scale < 1e-300 else 1e-13)
+    assert np.isfinite(scaled.control).all()
+
+
+def test_weights_without_effect_are_refused():
+    with pytest.raises(ss.InputError, match="at least 1e-100 times the largest") as caught:
+        ss.PiecewiseBezier([[[0, 0], [1, 1], [2, 0]]], [0, 1], weights=[[1, 1e-320, 1]])
+    assert (caught.value.argument, caught.value.index) == ("weights", 1)
+
+
 def test_a_nurbs_curve_by_its_knots():
     knots = [0, 0, 0, 1, 1, 2, 2, 3, 3, 4, 4, 4]
     points, circle = quarter_circles()

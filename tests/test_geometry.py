@@ -193,3 +193,18 @@ def test_planar_curves_stay_planar(rng):
     assert curve.tangents.shape == curve.points.shape == (9, 2)
     assert curve.sample(5).shape == (5, 2)
     np.testing.assert_array_equal(curve.torsion(u), 0.0)
+
+
+SPREAD = [[0, 0], [1e9, 0], [1e9, 1e-8]]
+
+
+@pytest.mark.parametrize("family", cases.FAMILIES)
+@pytest.mark.parametrize("by", ["parameter", "arc-length"])
+@pytest.mark.parametrize("points", [SPREAD, SPREAD[::-1], [[0, 0], [1, 2], [3, 1]]], ids=str)
+def test_samples_begin_and_end_at_the_ends(family, by, points):
+    """Whatever shares of the length round to."""
+    curve = family(points, "centripetal")
+    for n in (2, 3, 7, 1024, 5000):
+        samples = curve.sample(n, by=by)
+        np.testing.assert_array_equal(samples[[0, -1]], curve(curve.parameters[[0, -1]]))
+    np.testing.assert_array_equal(curve.sample(1, by=by), curve(curve.parameters[:1]))

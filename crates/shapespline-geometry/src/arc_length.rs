@@ -1,5 +1,7 @@
 //! Arc length, and parameters at given arc lengths.
 
+use std::ops::ControlFlow;
+
 use rayon::prelude::*;
 
 use crate::{
@@ -137,22 +139,30 @@ impl<'a, C: Curve + ?Sized> ArcLength<'a, C> {
     /// Measures every segment, each to `1e-13` of the length of its Bézier polygon. Cost O(N).
     #[must_use]
     pub fn new(curve: &'a C) -> Self {
+        let measured = Self::new_with(curve, &|| ControlFlow::Continue(()));
+        measured.unwrap_or_else(|| Self { curve, upto: vec![0.0] })
+    }
+
+    /// The same, or nothing if `go_on`, which is asked before each segment, breaks off.
+    #[must_use]
+    pub fn new_with(curve: &'a C, go_on: &(dyn Fn() -> ControlFlow<()> + Sync)) -> Option<Self> {
         let cubic = curve.cubic();
         let n = cubic.segments();
-        let measure = |i: usize| cubic.segment(i).arc_length(0.0, 1.0);
+        let measure =
+            |i: usize| go_on().is_continue().then(|| cubic.segment(i).arc_length(0.0, 1.0));
         // With room for the zero before the first; then the running sums take the lengths' places.
         let mut upto: Vec<f64> = if n < MANY {
-            std::iter::once(0.0).chain((0..n).map(measure)).collect()
+            std::iter::once(Some(0.0)).chain((0..n).map(measure)).collect::<Option<_>>()?
         } else {
             let lengths = (0..n).into_par_iter().with_min_len(MANY / 8).map(measure);
-            rayon::iter::once(0.0).chain(lengths).collect()
+            rayon::iter::once(Some(0.0)).chain(lengths).collect::<Option<_>>()?
         };
         let mut sum = 0.0;
         for length in &mut upto {
             sum += *length;
             *length = sum;
         }
-        Self { curve, upto }
+        Some(Self { curve, upto })
     }
 
     /// Length of the whole curve.

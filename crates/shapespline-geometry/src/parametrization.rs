@@ -17,7 +17,8 @@ pub enum Parametrization {
     Chordal,
     /// `u_{i+1} − u_i = √‖L_i‖`.
     Centripetal,
-    /// `u_{i+1} − u_i = ‖L_i‖^e` for a finite exponent `e` (0 uniform, ½ centripetal, 1 chordal).
+    /// `u_{i+1} − u_i = ‖L_i‖^e` for an exponent `e` between 0 and 1 (0 uniform, ½ centripetal, 1
+    /// chordal).
     Exponent(f64),
     /// The parameters themselves, strictly increasing, one a point.
     Given(Vec<f64>),
@@ -27,7 +28,7 @@ impl Parametrization {
     /// Parameters of `points`.
     ///
     /// # Errors
-    /// Repeated neighbouring points (where the choice depends on chords), a non-finite exponent,
+    /// Repeated neighbouring points (where the choice depends on chords), an exponent out of range,
     /// given parameters that are not finite, not strictly increasing or not one a point, and
     /// chords so long or short that the parameters leave the range of f64.
     pub fn parameters(&self, points: &[DVec3]) -> Result<Vec<f64>, InputError> {
@@ -35,11 +36,11 @@ impl Parametrization {
             Self::Uniform => Ok((0..points.len()).map(|i| i as f64).collect()),
             Self::Chordal => accumulate(points, |l| l),
             Self::Centripetal => accumulate(points, f64::sqrt),
-            Self::Exponent(e) if e.is_finite() => accumulate(points, |l| l.powf(*e)),
+            Self::Exponent(e) if (0.0..=1.0).contains(e) => accumulate(points, |l| l.powf(*e)),
             Self::Exponent(e) => Err(InputError::Scalar {
                 argument: "parameters",
                 value: *e,
-                allowed: "a finite exponent",
+                allowed: "an exponent between 0 and 1",
             }),
             Self::Given(u) => {
                 if u.len() != points.len() {

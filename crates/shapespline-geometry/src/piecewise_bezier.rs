@@ -8,6 +8,7 @@ use crate::{
     bspline::bezier_of_bspline,
     parametrization::check_increasing,
     polynomial::{binomials, split},
+    vector::power_of_two,
 };
 
 /// Bézier pieces of one degree between increasing breaks, held in homogeneous coordinates
@@ -33,6 +34,9 @@ pub struct BezierPart {
     pub local: [f64; 2],
 }
 
+/// Least weight over the largest: less has no effect, and products of such weights underflow.
+const LEAST_WEIGHT: f64 = 1e-100;
+
 /// Largest degree that is taken: binomial coefficients of products stay exact in f64.
 const MAX_DEGREE: usize = 18;
 
@@ -53,10 +57,11 @@ impl PiecewiseBezier {
         Self::homogeneous(breaks, control, degree, dimension, false)
     }
 
-    /// A rational curve: each control point with its weight, which has to be positive.
+    /// A rational curve: each control point with its weight, which has to be positive. Equal weights divide
+    /// out: the curve is polynomial then. Only ratios count, so that extreme weights are scaled.
     ///
     /// # Errors
-    /// As [`PiecewiseBezier::new`]; weights of another number, or not positive.
+    /// As [`PiecewiseBezier::new`]; weights of another number, not positive, or below 1e−100 of the largest.
     pub fn rational(
         breaks: Vec<f64>,
         control: &[DVec3],
@@ -64,8 +69,8 @@ impl PiecewiseBezier {
         degree: usize,
         dimension: Dimension,
     ) -> Result<Self, InputError> {
-        let control = weighted(control, weights)?;
-        Self::homogeneous(breaks, control, degree, dimension, true)
+        let (control, rational) = weighted(control, weights)?;
+        Self::homogeneous(breaks, control, degree, dimension, rational)
     }
 
     /// From the power basis (SciPy's `PPoly`): piece `i` is `Σ_k c_k (u − breaks[i])^{d−k}`, and its
@@ -158,10 +163,10 @@ impl PiecewiseBezier {
         degree: usize,
         dimension: Dimension,
     ) -> Result<Self, InputError> {
-        let control = weighted(control, weights)?;
+        let (control, rational) = weighted(control, weights)?;
         check_degree(degree)?;
         let (breaks, pieces) = bezier_of_bspline(knots, &control, degree)?;
-        Self::homogeneous(breaks, pieces, degree, dimension, true)
+        Self::homogeneous(breaks, pieces, degree, dimension, rational)
     }
 
     /// From control points in homogeneous coordinates `(w x, w y, w z, w)`, as [`Self::piece`] gives
@@ -307,7 +312,8 @@ fn still_ends(points: &mut [DVec3], size: DVec3) {
     }
 }
 
-fn weighted(control: &[DVec3], weights: &[f64]) -> Result<Vec<DVec4>, InputError> {
+/// Control points in homogeneous coordinates, and whether the weights matter.
+fn weighted(control: &[DVec3], weights: &[f64]) -> Result<(Vec<DVec4>, bool), InputError> {
     if weights.len() != control.len() {
         let (expected, found) = (control.len(), weights.len());
         let per = "one for each control point";
@@ -318,7 +324,20 @@ fn weighted(control: &[DVec3], weights: &[f64]) -> Result<Vec<DVec4>, InputError
         let allowed = "positive and finite";
         return Err(InputError::OutOfRange { argument, index, value, allowed });
     }
-    Ok(control.iter().zip(weights).map(|(&p, &w)| (p * w).extend(w)).collect())
+    let largest = weights.iter().copied().fold(0.0, f64::max);
+    if let Some(index) = weights.iter().position(|&w| w < LEAST_WEIGHT * largest) {
+        let (argument, value) = ("weights", weights[index]);
+        let allowed = "at least 1e-100 times the largest";
+        return Err(InputError::OutOfRange { argument, index, value, allowed });
+    }
+    if weights.iter().all(|&w| w == largest) {
+        return Ok((control.iter().map(|p| p.extend(1.0)).collect(), false));
+    }
+    // Far from one, products with the points would overflow or lose digits.
+    let far = !(1e-50..=1e50).contains(&largest);
+    let scale = if far { power_of_two(largest) } else { 1.0 };
+    let weigh = |(&p, &w): (&DVec3, &f64)| (p * (w / scale)).extend(w / scale);
+    Ok((control.iter().zip(weights).map(weigh).collect(), true))
 }
 
 fn check_degree(degree: usize) -> Result<(), InputError> {

@@ -21,7 +21,7 @@ use crate::{
 /// points : array_like, shape (n, 3) or (n, 2)
 ///     Points to interpolate, n ≥ 2; neighbours must differ. Planar points give a planar curve.
 /// parameters : {"centripetal", "chordal", "uniform"}, float or array_like, shape (n,)
-///     Parameters of the points: by name, as the exponent e of ``u[i+1] - u[i] = ‖points[i+1] -
+///     Parameters of the points: by name, as the exponent e in [0, 1] of ``u[i+1] - u[i] = ‖points[i+1] -
 ///     points[i]‖**e``, or strictly increasing numbers.
 /// boundary : {"natural", "zero-curvature", "periodic", "circular"} or Tangents
 ///     No second derivative at both ends (two names); closed data, whose last point is the first; end

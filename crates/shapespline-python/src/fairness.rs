@@ -1,13 +1,13 @@
 //! `fairness`: the measures of fairness of any curve.
 
 use pyo3::{prelude::*, types::PyTuple};
-use shapespline::geometry::{self, Place, fairness};
+use shapespline::geometry::{self, Place, fairness_with};
 
 use crate::{
     curve::SpaceCurve,
     pickle::{self, Kind, Reduced},
     piecewise::PiecewiseBezier,
-    work::detached,
+    work::{GoOn, interrupted, interruptible},
 };
 
 /// How fair a curve is: six measures, and where it has cusps and corners.
@@ -80,11 +80,15 @@ pub(crate) struct Fairness {
 }
 
 impl Fairness {
-    /// The measures of a curve, whose places have the parameters that `parameter` says.
-    pub(crate) fn of(curve: &geometry::PiecewiseBezier, parameter: impl Fn(Place) -> f64) -> Self {
-        let found = fairness(curve);
+    /// The measures of a curve, whose places have the parameters that `parameter` says; none after Ctrl-C.
+    pub(crate) fn of(
+        curve: &geometry::PiecewiseBezier,
+        parameter: impl Fn(Place) -> f64,
+        go_on: GoOn<'_>,
+    ) -> Option<Self> {
+        let found = fairness_with(curve, go_on)?;
         let of_break = |&k: &usize| parameter(Place { piece: k - 1, t: 1.0 });
-        Self {
+        Some(Self {
             length: found.length,
             bending: found.bending,
             variation: found.variation,
@@ -94,7 +98,7 @@ impl Fairness {
             max_curvature_jump: found.max_curvature_jump,
             cusps: found.cusps.iter().map(|&place| parameter(place)).collect(),
             corners: found.corners.iter().map(of_break).collect(),
-        }
+        })
     }
 }
 
@@ -155,12 +159,12 @@ impl SpaceCurve {
     /// >>> import shapespline as ss
     /// >>> ss.NuSpline([[0, 0], [3, 4]]).fairness().length
     /// 5.0
-    fn fairness(&self, py: Python<'_>) -> Fairness {
+    fn fairness(&self, py: Python<'_>) -> PyResult<Fairness> {
         let cubic = self.curve.cubic();
-        detached(py, cubic.segments(), || {
-            let path = self.curve.path();
-            Fairness::of(&cubic.into(), |place| path.parameter(place.piece, place.t))
-        })
+        let path = self.curve.path();
+        let parameter = |place: Place| path.parameter(place.piece, place.t);
+        let of = |go_on: GoOn<'_>| Fairness::of(&cubic.into(), parameter, go_on);
+        interruptible(py, cubic.segments(), of)?.ok_or_else(interrupted)
     }
 }
 
@@ -185,13 +189,12 @@ impl PiecewiseBezier {
     /// >>> arc = ss.PiecewiseBezier([[[1, 0], [1, 1], [0, 1]]], [0, 1], weights=[[1, 0.5**0.5, 1]])
     /// >>> round(arc.fairness().max_curvature, 12), arc.fairness().curvature_extrema
     /// (1.0, 0)
-    fn fairness(&self, py: Python<'_>) -> Fairness {
+    fn fairness(&self, py: Python<'_>) -> PyResult<Fairness> {
         let curve = &self.curve;
-        detached(py, curve.pieces(), || {
-            let breaks = curve.breaks();
-            let parameter =
-                |Place { piece, t }: Place| breaks[piece] * (1.0 - t) + breaks[piece + 1] * t;
-            Fairness::of(curve, parameter)
-        })
+        let breaks = curve.breaks();
+        let parameter =
+            |Place { piece, t }: Place| breaks[piece] * (1.0 - t) + breaks[piece + 1] * t;
+        let of = |go_on: GoOn<'_>| Fairness::of(curve, parameter, go_on);
+        interruptible(py, curve.pieces(), of)?.ok_or_else(interrupted)
     }
 }

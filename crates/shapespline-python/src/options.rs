@@ -196,7 +196,7 @@ impl<'py> FromPyObject<'_, 'py> for Parameters {
                 _ => Err(unknown(
                     "parameters",
                     &name,
-                    "'uniform', 'chordal', 'centripetal', an exponent, or an increasing array",
+                    "'uniform', 'chordal', 'centripetal', an exponent from 0 to 1, or an increasing array",
                 )),
             };
         }

@@ -110,7 +110,7 @@ impl Scale {
 /// points : array_like, shape (n, 3) or (n, 2)
 ///     Points to interpolate, n ≥ 2; neighbours must differ. Planar points give a planar curve.
 /// parameters : {"chordal", "centripetal", "uniform"}, float or array_like, shape (n,)
-///     Parameters of the points: by name, as the exponent e of ``u[i+1] - u[i] = ‖points[i+1] -
+///     Parameters of the points: by name, as the exponent e in [0, 1] of ``u[i+1] - u[i] = ‖points[i+1] -
 ///     points[i]‖**e``, or strictly increasing numbers.
 /// boundary : {"natural", "zero-curvature", "periodic", "circular"} or Tangents
 ///     No second derivative at both ends (two names); closed data, whose last point is the first; end
@@ -125,7 +125,7 @@ impl Scale {
 ///     ``diagnostics.dropped`` lists the points that were left out, and ``bezier`` and ``knots`` know
 ///     nothing of them.
 /// tangent_scale : float, array_like of shape (n,), or pair of array_like of shape (n - 1,)
-///     λ in (0, 1], without unit: 1 gives the C² cubic spline, and smaller λ pull the curve to the
+///     λ from 1e-65 to 1, without unit: 1 gives the C² cubic spline, and smaller λ pull the curve to the
 ///     polygon. One number, one a point, or (λ⁰, λ¹): one at the start and one at the end of each
 ///     segment.
 ///
@@ -133,7 +133,7 @@ impl Scale {
 /// ------
 /// ValueError
 ///     If an argument holds unusable values: NaN, infinities, wrong shapes, repeated neighbours,
-///     parameters that do not increase, λ outside (0, 1], unknown names. The message says where.
+///     parameters that do not increase, λ out of range, unknown names. The message says where.
 /// TypeError
 ///     If an argument is of a wrong kind.
 ///

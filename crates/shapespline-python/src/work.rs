@@ -2,7 +2,7 @@
 
 use std::{
     cell::OnceCell,
-    ops::ControlFlow,
+    ops::{ControlFlow, Range},
     process,
     sync::{
         Arc, Mutex, PoisonError,
@@ -13,7 +13,7 @@ use std::{
 };
 
 use arc_swap::ArcSwapOption;
-use pyo3::prelude::*;
+use pyo3::{exceptions::PyKeyboardInterrupt, prelude::*};
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
 /// From so many items on, the crates below work in parallel.
@@ -101,6 +101,38 @@ pub(crate) fn interruptible<T: Send>(
     // What came in while the last step ran.
     py.check_signals()?;
     done
+}
+
+/// What is raised where work broke off.
+pub(crate) fn interrupted() -> PyErr {
+    PyKeyboardInterrupt::new_err(())
+}
+
+/// Items that are worked on between two questions whether Ctrl-C was pressed: milliseconds.
+const PART: usize = 1 << 17;
+
+/// What a function makes of `size` items, part by part where there are many; Ctrl-C ends it with
+/// `KeyboardInterrupt`.
+pub(crate) fn in_parts<E: Send>(
+    py: Python<'_>,
+    size: usize,
+    of: impl Fn(Range<usize>) -> Result<Vec<f64>, E> + Send + Sync,
+) -> PyResult<Result<Vec<f64>, E>> {
+    if size <= PART {
+        return Ok(detached(py, size, || of(0..size)));
+    }
+    interruptible(py, size, |go_on| {
+        let mut all = Vec::with_capacity(size);
+        for part in parts(size).take_while(|_| go_on().is_continue()) {
+            all.append(&mut of(part)?);
+        }
+        Ok(all)
+    })
+}
+
+/// The parts of so many items; one even of none.
+pub(crate) fn parts(size: usize) -> impl Iterator<Item = Range<usize>> {
+    (0..size.max(1)).step_by(PART).map(move |start| start..size.min(start + PART))
 }
 
 /// The work runs on this thread, and asks for signals itself.

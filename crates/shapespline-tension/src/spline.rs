@@ -14,7 +14,7 @@ use shapespline_search::{
 
 use crate::system::MannisSystem;
 
-/// The scale `λ` of tangents in legs, each in `(0, 1]`.
+/// The scale `λ` of tangents in legs, each between `1e−65` and 1.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum TangentScale<'a> {
     /// The same everywhere.
@@ -25,13 +25,15 @@ pub enum TangentScale<'a> {
     Segments(&'a [f64], &'a [f64]),
 }
 
-const ALLOWED: &str = "in (0, 1]";
+const ALLOWED: &str = "between 1e-65 and 1";
+/// The least `λ`: third derivatives grow as its fourth power falls, and have to stay finite.
+const LEAST: f64 = 1e-65;
 
 impl TangentScale<'_> {
     /// `[λ⁰, λ¹]` of each segment, checked.
     fn slopes(self, polygon: &DataPolygon) -> Result<Vec<[f64; 2]>, InputError> {
         const ARGUMENT: &str = "tangent_scale";
-        let valid = |x: f64| x > 0.0 && x <= 1.0;
+        let valid = |x: f64| (LEAST..=1.0).contains(&x);
         let nodal = |tension: Tension<'_>| {
             let nodes = tension.nodal(polygon, ARGUMENT, ALLOWED, valid)?;
             let end = |i: usize| nodes[(i + 1) % nodes.len()];
@@ -96,7 +98,7 @@ impl TensionSpline {
     /// The tension cubic of given `λ`. Cost O(N).
     ///
     /// # Errors
-    /// `λ` outside `(0, 1]` or of a wrong length; tangents that overflow.
+    /// `λ` out of range or of a wrong length; tangents that overflow.
     pub fn new(polygon: DataPolygon, scale: TangentScale<'_>) -> Result<Self, FitError> {
         let slopes = scale.slopes(&polygon)?;
         let system = MannisSystem::new(&polygon, slopes);

@@ -1,15 +1,17 @@
 //! The checker for curves that were not made here.
 
+use std::ops::ControlFlow;
+
 use glam::DVec3;
 use rayon::prelude::*;
 use shapespline_geometry::{DataPolygon, InputError, PiecewiseBezier, length, polynomial::Sign};
 
-use super::{Question, Segment, decide, measure};
+use super::{Question, Segment, corner::Beyond, decide, measure};
 use crate::{
     Checker, Criteria, Criterion, Faults, Notes, Record, ShapeReport, Tolerances, Undecided,
     checker::Cubic,
     notes::notes,
-    rounding::{Lean, UNIT},
+    rounding::{LEG_ERROR, Lean, UNIT},
 };
 
 /// How far from the points a curve may pass by default, over the extent of the points.
@@ -119,25 +121,33 @@ impl<'a> CurveChecker<'a> {
     /// The report. Cost O(N); memory follows the violations and the open questions.
     #[must_use]
     pub fn report(&self) -> ShapeReport {
+        let report = self.report_with(&|| ControlFlow::Continue(()));
+        report.unwrap_or_else(|| self.checker.blank_report())
+    }
+
+    /// As [`CurveChecker::report`], with a question whether to go on, which is asked before each segment
+    /// that is not one cubic (from any thread); no report if it breaks off.
+    #[must_use]
+    pub fn report_with(&self, go_on: &(dyn Fn() -> ControlFlow<()> + Sync)) -> Option<ShapeReport> {
         if self.is_cubic() {
-            return self.report_on_cubics();
+            return Some(self.report_on_cubics());
         }
-        let of = |i: usize| (i, self.check_segment(i));
-        let found: Vec<(usize, Found)> = (0..self.checker.calls().len())
+        let of = |i: usize| go_on().is_continue().then(|| self.check_segment(i));
+        let found: Vec<Found> = (0..self.checker.calls().len())
             .into_par_iter()
             .with_min_len(64)
             .map(of)
-            .filter(|(_, found)| !found.records.is_empty() || !found.undecided.is_empty())
-            .collect();
+            .filter(|found| found.as_ref().is_none_or(|found| !found.is_empty()))
+            .collect::<Option<_>>()?;
         let mut report = self.checker.blank_report();
-        for (_, Found { records, undecided }) in found {
+        for Found { records, undecided } in found {
             for record in &records {
                 report.counts[record.criterion as usize].violated += 1;
             }
             report.violations.extend(records);
             report.undecided.extend(undecided);
         }
-        report
+        Some(report)
     }
 
     /// The record of one criterion on a segment. Where the question stays open the record says
@@ -195,7 +205,14 @@ impl<'a> CurveChecker<'a> {
     /// What the paper says of nodes and of oscillation, as information.
     #[must_use]
     pub fn notes(&self) -> Notes {
-        notes(&self.checker, |i| self.segment(i))
+        self.notes_with(&|| ControlFlow::Continue(())).unwrap_or_default()
+    }
+
+    /// As [`CurveChecker::notes`], with a question whether to go on, which is asked before each node and
+    /// segment; no notes if it breaks off.
+    #[must_use]
+    pub fn notes_with(&self, go_on: &(dyn Fn() -> ControlFlow<()> + Sync)) -> Option<Notes> {
+        notes(&self.checker, |i| self.segment(i), go_on)
     }
 
     fn check_segment(&self, i: usize) -> Found {
@@ -225,11 +242,14 @@ impl<'a> CurveChecker<'a> {
         if question.criterion != Criterion::Turning {
             return sign;
         }
-        let corner = |end: usize| self.beyond_chord(i, end, pieces.end_tangent(end)).is_some();
-        [0, 1]
-            .into_iter()
-            .filter(|&end| corner(end))
-            .fold(sign, |sign, end| sign.and(Sign::Fails { at: end as f64 }))
+        [0, 1].into_iter().fold(sign, |sign, end| {
+            let at = end as f64;
+            sign.and(match self.beyond_chord(i, end, pieces.end_tangent(end)) {
+                None => Sign::Positive,
+                Some(Beyond { is_certain: true, .. }) => Sign::Fails { at },
+                Some(_) => Sign::Undecided { from: at, to: at },
+            })
+        })
     }
 
     fn parameter(&self, segment: usize, local: f64) -> f64 {
@@ -242,9 +262,14 @@ impl<'a> CurveChecker<'a> {
         self.aligned && self.curve.degree() == 3 && !self.curve.is_rational()
     }
 
-    /// A vector along the tangent at the start (0) or the end (1) of a segment.
-    pub(super) fn end_tangent(&self, i: usize, end: usize) -> DVec3 {
-        if self.is_cubic() { self.end_legs(i)[end] } else { self.segment(i).end_tangent(end) }
+    /// A vector along the tangent at the start (0) or the end (1) of a segment, and what it may be off by.
+    pub(super) fn end_tangent(&self, i: usize, end: usize) -> (DVec3, f64) {
+        if self.is_cubic() {
+            let Cubic { legs, far, .. } = self.cubic(i);
+            (legs[end], LEG_ERROR * far)
+        } else {
+            self.segment(i).end_tangent(end)
+        }
     }
 
     fn end_legs(&self, i: usize) -> [DVec3; 2] {
@@ -283,8 +308,9 @@ impl<'a> CurveChecker<'a> {
 
     /// What is not proved of a segment that is one polynomial cubic, and what is violated.
     fn cubic_verdict(&self, i: usize) -> [Faults; 2] {
-        let (cubic, corners) = (self.cubic(i), self.corner_faults_of(i));
-        [Lean::Against, Lean::For].map(|lean| self.checker.judge(i, &cubic, lean).and(corners))
+        let cubic = self.cubic(i);
+        [Lean::Against, Lean::For]
+            .map(|lean| self.checker.judge(i, &cubic, lean).and(self.corner_faults_of(i, lean)))
     }
 
     fn segment(&self, i: usize) -> Segment {
@@ -347,6 +373,12 @@ impl<'a> CurveChecker<'a> {
 struct Found {
     records: Vec<Record>,
     undecided: Vec<Undecided>,
+}
+
+impl Found {
+    fn is_empty(&self) -> bool {
+        self.records.is_empty() && self.undecided.is_empty()
+    }
 }
 
 /// Whether the breaks are the parameters; an error where the curve does not reach them.

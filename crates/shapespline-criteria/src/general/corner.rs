@@ -8,16 +8,19 @@ use rayon::prelude::*;
 use shapespline_geometry::{DVec3, length, normalize};
 
 use super::CurveChecker;
-use crate::{Calls, Criterion, Faults, Record};
+use crate::{
+    Calls, Criterion, Faults, Record,
+    rounding::{Lean, UNIT, sum},
+};
 
 /// Segments that a thread looks at, at least.
 const BLOCK: usize = 4096;
 
 impl CurveChecker<'_> {
-    /// The faults of turning at corners, ascending by segment.
+    /// What is not proved of turning at corners, ascending by segment.
     pub(super) fn corner_faults(&self) -> Vec<(usize, Faults)> {
         let n = self.checker().calls().len();
-        let of = |i: usize| (i, self.corner_faults_of(i));
+        let of = |i: usize| (i, self.corner_faults_of(i, Lean::Against));
         let fails = |fault: &(usize, Faults)| !fault.1.is_empty();
         if n < 2 * BLOCK {
             (0..n).map(of).filter(fails).collect()
@@ -26,10 +29,11 @@ impl CurveChecker<'_> {
         }
     }
 
-    /// Those of one segment.
-    pub(super) fn corner_faults_of(&self, i: usize) -> Faults {
+    /// The same of one segment: what is not proved, or what certainly fails.
+    pub(super) fn corner_faults_of(&self, i: usize, lean: Lean) -> Faults {
         let at = |end: usize, fault: Faults| {
-            let fails = self.beyond_chord(i, end, self.end_tangent(i, end)).is_some();
+            let beyond = self.beyond_chord(i, end, self.end_tangent(i, end));
+            let fails = beyond.is_some_and(|beyond| beyond.is_certain || lean == Lean::Against);
             if fails { fault } else { Faults::default() }
         };
         at(0, Faults::TURNING_AT_START).and(at(1, Faults::TURNING_AT_END))
@@ -43,7 +47,7 @@ impl CurveChecker<'_> {
         let segment = record.segment;
         let beyond = |end| self.beyond_chord(segment, end, self.end_tangent(segment, end));
         [0, 1].into_iter().fold(record, |record, end| match beyond(end) {
-            Some(margin) if margin < record.margin => {
+            Some(Beyond { margin, .. }) if margin < record.margin => {
                 let location = self.checker().polygon().parameters()[segment + end];
                 Record { satisfied: false, margin, location, ..record }
             }
@@ -52,10 +56,15 @@ impl CurveChecker<'_> {
         })
     }
 
-    /// How far the tangent at the start (0) or the end (1) of a segment lies beyond the chord of the segment
-    /// beside: the sine between them, not positive. None where it does not, and none where both segments
-    /// have the same tangent.
-    pub(super) fn beyond_chord(&self, segment: usize, end: usize, own: DVec3) -> Option<f64> {
+    /// How far the tangent at the start (0) or the end (1) of a segment, given with what it may be off by,
+    /// lies beyond the chord of the segment beside. None where it certainly does not, and none where both
+    /// segments have the same tangent.
+    pub(super) fn beyond_chord(
+        &self,
+        segment: usize,
+        end: usize,
+        (own, error): (DVec3, f64),
+    ) -> Option<Beyond> {
         let polygon = self.checker().polygon();
         let asked = [Calls::TURNING_AT_START, Calls::TURNING_AT_END][end];
         if !self.checker().calls()[segment].any(asked) {
@@ -71,17 +80,29 @@ impl CurveChecker<'_> {
         let [before, after] = polygon.directions_at(segment + end);
         let normal = polygon.binormal(segment + end);
         let product = if end == 0 { before.cross(own) } else { own.cross(after) }.dot(normal);
+        // The unit chord has a sum of coordinates of √3 at most; it and the products round by a few units.
+        let error = (2.0 * error + 8.0 * UNIT * sum(own)) * 1.75 * sum(normal);
         // Written so that a NaN fails.
-        if product > 0.0 {
+        if product > error {
             return None;
         }
-        let other = normalize(self.end_tangent(beside, 1 - end));
+        let other = normalize(self.end_tangent(beside, 1 - end).0);
         let direction = normalize(own);
         let off = direction.cross(other).length();
         if off <= self.checker().tolerances().zero && direction.dot(other) > 0.0 {
             return None;
         }
         let size = length(own) * normal.length();
-        Some(if size > 0.0 { (product / size).clamp(-1.0, 0.0) } else { 0.0 })
+        let is_certain = !(product > -error);
+        let sine = if is_certain && size > 0.0 { product / size } else { 0.0 };
+        Some(Beyond { margin: sine.clamp(-1.0, 0.0), is_certain })
     }
+}
+
+/// A tangent beyond a chord.
+pub(super) struct Beyond {
+    /// The sine between them; not positive, and zero where rounding hides it.
+    pub(super) margin: f64,
+    /// Whether it is there however the tangent rounds.
+    pub(super) is_certain: bool,
 }

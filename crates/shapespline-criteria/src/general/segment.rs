@@ -49,16 +49,34 @@ impl Segment {
         Self { pieces: parts.iter().map(piece).collect() }
     }
 
-    /// A cubic of given end legs.
+    /// A cubic of given end legs, with the derivatives that the legs give: differences of control points
+    /// lose the digits of a leg that is short beside the chord.
     pub(crate) fn cubic([a, c]: [DVec3; 2], chord: DVec3) -> Self {
-        let control = [DVec3::ZERO, a, chord - c, chord].map(|p| p.extend(1.0)).to_vec();
-        Self::new(&[BezierPart { control, local: [0.0, 1.0] }], false, 0.0)
+        let far = [a, chord - c, chord].map(|p| p.abs().max_element());
+        let size = far.into_iter().fold(0.0, f64::max);
+        let size = if size > 0.0 { size } else { 1.0 };
+        let [a, c, chord] = [a, c, chord].map(|v| v / size);
+        let b = chord - a - c;
+        let of = |points: &[DVec3], factor: f64| {
+            let error = 4.0 * factor * f64::EPSILON;
+            Polynomial::new(points.iter().map(|p| *p * factor).collect(), error)
+        };
+        let derivatives = [
+            of(&[DVec3::ZERO, a, chord - c, chord], 1.0),
+            of(&[a, b, c], 3.0),
+            of(&[b - a, c - b], 6.0),
+            of(&[a - 2.0 * b + c], 6.0),
+        ];
+        Self { pieces: vec![Piece { local: [0.0, 1.0], a: derivatives, w: None }] }
     }
 
-    /// A vector along the tangent at the start (0) or the end (1).
-    pub(crate) fn end_tangent(&self, end: usize) -> DVec3 {
+    /// A vector along the tangent at the start (0) or the end (1), and what it may be off by.
+    pub(crate) fn end_tangent(&self, end: usize) -> (DVec3, f64) {
         let piece = if end == 0 { self.pieces.first() } else { self.pieces.last() };
-        piece.map_or(DVec3::NAN, |piece| piece.tangent().ends()[end])
+        piece.map_or((DVec3::NAN, 0.0), |piece| {
+            let tangent = piece.tangent();
+            (tangent.ends()[end], tangent.error())
+        })
     }
 
     /// Two segments as one, the second begun where the first ends; the local parameter 0.5 is the
@@ -159,6 +177,23 @@ impl Piece {
         }
     }
 
+    /// `det[γ', γ'', γ''']` at `t`, derivatives with respect to the segment's local parameter.
+    pub(crate) fn twist(&self, t: f64) -> f64 {
+        let rate = 1.0 / (self.local[1] - self.local[0]);
+        let [position, velocity] = [&self.a[0], &self.a[1]].map(Polynomial::coefficients);
+        match (&self.w, velocity, position) {
+            // Of a cubic with legs a, c it is 108 det[a, chord, c] everywhere. The product of the
+            // derivatives loses the digits of legs that are short beside the chord.
+            (None, [a, _, c], [start, _, _, end]) => {
+                12.0 * a.cross(end - start).dot(*c) * rate.powi(6)
+            }
+            _ => {
+                let [_, d1, d2, d3] = self.jet(t);
+                d1.cross(d2).dot(d3)
+            }
+        }
+    }
+
     /// `γ − γ(0), γ', γ'', γ'''` at `t`, derivatives with respect to the segment's local parameter.
     pub(crate) fn jet(&self, t: f64) -> [DVec3; 4] {
         let mut g = [0, 1, 2, 3].map(|k| self.a[k].value(t));
@@ -209,6 +244,23 @@ mod tests {
                 let difference = (piece.jet(t + h)[i] - piece.jet(t - h)[i]) / (2.0 * h) / 0.75;
                 let exact = piece.jet(t)[i + 1];
                 assert!((difference - exact).length() < 1e-5 * (1.0 + exact.length()), "{i}");
+            }
+        }
+    }
+
+    /// Legs of 1e−3 to 1e−12 chords: the torsion at both ends keeps its digits.
+    #[test]
+    fn derivatives_at_the_ends_keep_the_digits_of_short_legs() {
+        let chord = DVec3::new(1.0, 0.25, -0.5);
+        for k in 3..=12 {
+            let a = DVec3::new(0.3, 0.7, 0.2) * 10f64.powi(-k);
+            let c = DVec3::new(0.1, -0.4, 0.9) * 10f64.powi(-k);
+            let segment = Segment::cubic([a, c], chord);
+            // The determinant of the three derivatives is 108 det[a, b, c] at both ends, b = chord − a − c.
+            let expected = a.cross(chord).dot(c) * 108.0;
+            for t in [0.0, 1.0] {
+                let found = segment.pieces[0].twist(t);
+                assert!((found / expected - 1.0).abs() < 1e-14, "{k} {t}: {found} {expected}");
             }
         }
     }

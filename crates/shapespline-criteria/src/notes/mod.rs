@@ -17,6 +17,8 @@
 
 mod neighbourhood;
 
+use std::ops::ControlFlow;
+
 use glam::DVec3;
 
 use self::neighbourhood::Pair;
@@ -117,11 +119,28 @@ impl Checker<'_> {
     where
         L: Fn(usize) -> [DVec3; 2],
     {
-        notes(self, |i| Segment::cubic(legs(i), self.polygon().chord(i)))
+        self.notes_with(legs, &|| ControlFlow::Continue(())).unwrap_or_default()
+    }
+
+    /// As [`Checker::notes`], with a question whether to go on, which is asked before each node and segment;
+    /// no notes if it breaks off.
+    pub fn notes_with<L>(
+        &self,
+        legs: L,
+        go_on: &(dyn Fn() -> ControlFlow<()> + Sync),
+    ) -> Option<Notes>
+    where
+        L: Fn(usize) -> [DVec3; 2],
+    {
+        notes(self, |i| Segment::cubic(legs(i), self.polygon().chord(i)), go_on)
     }
 }
 
-pub(crate) fn notes(checker: &Checker<'_>, segment: impl Fn(usize) -> Segment) -> Notes {
+pub(crate) fn notes(
+    checker: &Checker<'_>,
+    segment: impl Fn(usize) -> Segment,
+    go_on: &(dyn Fn() -> ControlFlow<()> + Sync),
+) -> Option<Notes> {
     let polygon = checker.polygon();
     let n = polygon.segments();
     let mut notes = Notes::default();
@@ -130,6 +149,9 @@ pub(crate) fn notes(checker: &Checker<'_>, segment: impl Fn(usize) -> Segment) -
     let calls = Calls::of_polygon(polygon, &checker.tolerances());
     let spatial = calls.iter().any(|c| c.any(Calls::of(Criterion::Torsion)));
     for node in nodes {
+        if go_on().is_break() {
+            return None;
+        }
         let sides = [segment((node + n - 1) % n), segment(node)];
         let around = Around { checker, node, sides };
         notes.nodes.extend(around.compatibility(node, 0..2));
@@ -141,9 +163,12 @@ pub(crate) fn notes(checker: &Checker<'_>, segment: impl Fn(usize) -> Segment) -
     }
     let coplanar = Calls::of(Criterion::Coplanarity);
     for i in (0..n).filter(|&i| calls[i].any(coplanar)) {
+        if go_on().is_break() {
+            return None;
+        }
         notes.oscillations.push(oscillation(checker, i, &segment(i)));
     }
-    notes
+    Some(notes)
 }
 
 /// A node and the segments that meet there.
@@ -204,7 +229,7 @@ impl Around<'_, '_> {
         let value = [0, 1].into_iter().fold(f64::INFINITY, |least, side| {
             let [_, d1, d2, d3] = end_jet(&self.sides[side], side == 0);
             let size = d1.length() * d2.length() * d3.length();
-            let value = if size > 0.0 { d1.cross(d2).dot(d3) / size } else { 0.0 };
+            let value = if size > 0.0 { twist(&self.sides[side], side == 0) / size } else { 0.0 };
             least.min(signs[side] * value)
         });
         let margin = Margin { value, at: self.u(self.node) };
@@ -221,6 +246,12 @@ impl Around<'_, '_> {
 fn end_jet(segment: &Segment, end: bool) -> [DVec3; 4] {
     let piece = if end { segment.pieces.last() } else { segment.pieces.first() };
     piece.map_or([DVec3::NAN; 4], |piece| piece.jet(if end { 1.0 } else { 0.0 }))
+}
+
+/// `det[γ', γ'', γ''']` at the end of a segment, or at its start.
+fn twist(segment: &Segment, end: bool) -> f64 {
+    let piece = if end { segment.pieces.last() } else { segment.pieces.first() };
+    piece.map_or(f64::NAN, |piece| piece.twist(if end { 1.0 } else { 0.0 }))
 }
 
 fn oscillation(checker: &Checker<'_>, i: usize, segment: &Segment) -> Oscillation {

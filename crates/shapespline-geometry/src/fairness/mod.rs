@@ -11,6 +11,8 @@
 
 mod piece;
 
+use std::ops::ControlFlow;
+
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -78,14 +80,33 @@ pub struct Fairness {
 #[must_use]
 pub fn fairness(curve: &PiecewiseBezier) -> Fairness {
     let unit = unit_of(curve);
-    let measure = |i: usize| measure(curve, i, unit);
+    let measured = pieces_of(curve, unit, &|| ControlFlow::Continue(()));
+    Summary::of(&measured.unwrap_or_default()).in_units_of(unit)
+}
+
+/// As [`fairness`], with a question whether to go on, which is asked before each piece (from any thread);
+/// nothing if it breaks off.
+#[must_use]
+pub fn fairness_with(
+    curve: &PiecewiseBezier,
+    go_on: &(dyn Fn() -> ControlFlow<()> + Sync),
+) -> Option<Fairness> {
+    let unit = unit_of(curve);
+    Some(Summary::of(&pieces_of(curve, unit, go_on)?).in_units_of(unit))
+}
+
+fn pieces_of(
+    curve: &PiecewiseBezier,
+    unit: f64,
+    go_on: &(dyn Fn() -> ControlFlow<()> + Sync),
+) -> Option<Vec<Measured>> {
+    let measure = |i: usize| go_on().is_continue().then(|| measure(curve, i, unit));
     let n = curve.pieces();
-    let pieces: Vec<Measured> = if n < PARALLEL {
+    if n < PARALLEL {
         (0..n).map(measure).collect()
     } else {
         (0..n).into_par_iter().with_min_len(PARALLEL / 8).map(measure).collect()
-    };
-    Summary::of(&pieces).in_units_of(unit)
+    }
 }
 
 /// A power of two near the largest extent of a piece, so that nothing overflows.

@@ -10,7 +10,7 @@ use crate::{
     input::Query,
     options,
     output::{FloatArray, filled, shaped, vector},
-    work::detached,
+    work::{interruptible, parts},
 };
 
 /// Parameters a task when a quantity is evaluated in parallel.
@@ -29,14 +29,16 @@ impl SpaceCurve {
         let row = |(row, &u): (&mut [f64; COLUMNS], &f64)| *row = of(curve, u);
         filled(py, shape, |out| {
             let rows = out.as_chunks_mut().0;
-            detached(py, u.len(), || {
-                if u.len() <= BLOCK {
-                    rows.iter_mut().zip(u).for_each(row);
-                } else {
-                    rows.par_iter_mut().zip(u).with_min_len(BLOCK).for_each(row);
+            interruptible(py, u.len(), |go_on| {
+                for part in parts(u.len()).take_while(|_| go_on().is_continue()) {
+                    let (rows, u) = (&mut rows[part.clone()], &u[part]);
+                    if u.len() <= BLOCK {
+                        rows.iter_mut().zip(u).for_each(row);
+                    } else {
+                        rows.par_iter_mut().zip(u).with_min_len(BLOCK).for_each(row);
+                    }
                 }
-            });
-            Ok(())
+            })
         })
     }
 
@@ -148,8 +150,15 @@ impl SpaceCurve {
             Query::Many(u) => {
                 let (parameters, path) = (u.values(), self.curve.path());
                 filled(py, &with_columns(u.shape(), columns), |out| {
-                    let work = || path.evaluate_into(parameters, order, side, out);
-                    detached(py, parameters.len(), work).map_err(input_error)
+                    let done = interruptible(py, parameters.len(), |go_on| {
+                        parts(parameters.len()).take_while(|_| go_on().is_continue()).try_for_each(
+                            |part| {
+                                let out = &mut out[part.start * columns..part.end * columns];
+                                path.evaluate_into(&parameters[part], order, side, out)
+                            },
+                        )
+                    });
+                    done?.map_err(input_error)
                 })
             }
         }

@@ -8,8 +8,8 @@ use super::SpaceCurve;
 use crate::{
     error::input_error,
     options::{self, Spacing},
-    output::{FloatArray, room, shaped, zeros},
-    work::detached,
+    output::{FloatArray, filled, room},
+    work::{GoOn, interruptible, parts},
 };
 
 #[pymethods]
@@ -48,11 +48,15 @@ impl SpaceCurve {
         py: Python<'_>,
         #[pyo3(from_py_with = options::a)] a: Option<f64>,
         #[pyo3(from_py_with = options::b)] b: Option<f64>,
-    ) -> f64 {
+    ) -> PyResult<f64> {
         let cubic = self.curve.cubic();
         let knots = cubic.knots();
         let (a, b) = (a.unwrap_or(knots[0]), b.unwrap_or(knots[knots.len() - 1]));
-        detached(py, cubic.segments(), || ArcLength::new(self.curve.path()).between(a, b))
+        let of = |go_on: GoOn<'_>| {
+            ArcLength::new_with(self.curve.path(), go_on).map(|lengths| lengths.between(a, b))
+        };
+        // Nothing comes of it only after Ctrl-C, which is an error already.
+        Ok(interruptible(py, cubic.segments(), of)?.unwrap_or(f64::NAN))
     }
 
     /// Points on the curve from its first to its last point, evenly spaced.
@@ -94,36 +98,47 @@ impl SpaceCurve {
         #[pyo3(from_py_with = options::n)] n: usize,
         #[pyo3(from_py_with = options::by)] by: Spacing,
     ) -> PyResult<FloatArray<'py>> {
-        let (cubic, columns) = (self.curve.cubic(), self.columns());
+        let (cubic, path, columns) = (self.curve.cubic(), self.curve.path(), self.columns());
         room(n, columns)?;
-        let mut u = zeros(n, 1)?;
-        let values = detached(py, n.max(cubic.segments()), || {
-            let knots = cubic.knots();
-            let (first, last) = (knots[0], knots[knots.len() - 1]);
-            let part = |i: usize| i as f64 / (n - 1).max(1) as f64;
-            let end = n - 1;
-            match by {
-                Spacing::Parameter => u.iter_mut().enumerate().for_each(|(i, u)| {
-                    *u = if i == end && i > 0 { last } else { first + part(i) * (last - first) };
-                }),
-                Spacing::ArcLength => {
-                    let lengths = ArcLength::new(self.curve.path());
-                    let total = lengths.total();
-                    let of = |(i, u): (usize, &mut f64)| *u = lengths.parameter(part(i) * total);
-                    if n < 1024 {
-                        u.iter_mut().enumerate().for_each(of);
-                    } else {
-                        // In parallel only where the pool of this process was entered.
-                        match rayon::current_thread_index() {
-                            Some(_) => u.par_iter_mut().enumerate().for_each(of),
-                            None => u.iter_mut().enumerate().for_each(of),
-                        }
+        let knots = cubic.knots();
+        let (first, last) = (knots[0], knots[knots.len() - 1]);
+        let share = |i: usize| i as f64 / (n - 1).max(1) as f64;
+        let by_parameter = |i: usize| {
+            if i == n - 1 && i > 0 { last } else { first + share(i) * (last - first) }
+        };
+        filled(py, &[n, columns], |out| {
+            interruptible(py, n.max(cubic.segments()), |go_on| {
+                let lengths = match by {
+                    Spacing::Parameter => None,
+                    Spacing::ArcLength => match ArcLength::new_with(path, go_on) {
+                        None => return Ok(()),
+                        lengths => lengths,
+                    },
+                };
+                let parameter = |i: usize| match &lengths {
+                    // The last point, whatever its share of the length rounds to.
+                    Some(lengths) if i < n - 1 || i == 0 => {
+                        lengths.parameter(share(i) * lengths.total())
                     }
+                    _ => by_parameter(i),
+                };
+                for part in parts(n) {
+                    if go_on().is_break() {
+                        break;
+                    }
+                    let out = &mut out[part.start * columns..part.end * columns];
+                    // In parallel only where the pool of this process was entered.
+                    let u: Vec<f64> = match rayon::current_thread_index() {
+                        Some(_) if lengths.is_some() => {
+                            part.into_par_iter().map(parameter).collect()
+                        }
+                        _ => part.map(parameter).collect(),
+                    };
+                    path.evaluate_into(&u, 0, Side::Right, out)?;
                 }
-            }
-            self.curve.path().evaluate_many(&u, 0, Side::Right)
+                Ok(())
+            })?
+            .map_err(input_error)
         })
-        .map_err(input_error)?;
-        shaped(py, values, &[n, columns])
     }
 }

@@ -1,6 +1,6 @@
 //! One function a column, of any of the three kinds.
 
-use std::ops::ControlFlow;
+use std::{convert::Infallible, ops::ControlFlow};
 
 use pyo3::{exceptions::PyKeyboardInterrupt, prelude::*};
 use rayon::prelude::*;
@@ -12,7 +12,7 @@ use shapespline::monotone::{
 
 use crate::{
     output::{room, zeros},
-    work::{GoOn, PARALLEL, detached, interruptible},
+    work::{GoOn, PARALLEL, detached, in_parts, interruptible, parts},
 };
 
 /// Columns of one kind; at least one.
@@ -192,24 +192,27 @@ impl Fits {
         let size = (0..self.len()).map(|k| of(k).len()).sum();
         let mut out = zeros(size, 1)?;
         let mut rest = &mut out[..];
-        let mut parts = Vec::with_capacity(self.len());
+        let mut rows = Vec::with_capacity(self.len());
         for k in 0..self.len() {
-            let part;
-            (part, rest) = rest.split_at_mut(of(k).len());
-            parts.push((k, part));
+            let row;
+            (row, rest) = rest.split_at_mut(of(k).len());
+            rows.push((k, row));
         }
-        let done = detached(py, size, || {
-            let one = |(k, part): (usize, &mut [f64])| {
-                work(self.column(k), of(k), part).map_err(|e| (k, e))
+        let done = interruptible(py, size, |go_on| {
+            let one = |(k, row): (usize, &mut [f64])| {
+                parts(row.len()).take_while(|_| go_on().is_continue()).try_for_each(|part| {
+                    let (places, values) = (&of(k)[part.clone()], &mut row[part]);
+                    work(self.column(k), places, values).map_err(|e| (k, e))
+                })
             };
             // The first of the failures, whatever the order in which they come.
             let failures: Vec<(usize, E)> = if size < PARALLEL || self.len() == 1 {
-                parts.into_iter().filter_map(|p| one(p).err()).collect()
+                rows.into_iter().filter_map(|row| one(row).err()).collect()
             } else {
-                parts.into_par_iter().filter_map(|p| one(p).err()).collect()
+                rows.into_par_iter().filter_map(|row| one(row).err()).collect()
             };
             failures.into_iter().next().map_or(Ok(()), Err)
-        });
+        })?;
         Ok(done.map(|()| out))
     }
 
@@ -232,22 +235,26 @@ impl Fits {
     ) -> PyResult<Vec<f64>> {
         let size = room(self.len(), each)?;
         if self.len() == 1 {
-            return Ok(detached(py, size, || self.column(0).evaluate_many(of(0), nu, mode)));
+            let (column, x) = (self.column(0), of(0));
+            let values = |part| Ok::<_, Infallible>(column.evaluate_many(&x[part], nu, mode));
+            return Ok(in_parts(py, size, values)?.unwrap_or_else(|never| match never {}));
         }
         let mut out = vec![0.0; size];
         if out.is_empty() {
             return Ok(out);
         }
-        detached(py, size, || {
+        interruptible(py, size, |go_on| {
             let work = |(k, row): (usize, &mut [f64])| {
-                self.column(k).evaluate_into(of(k), nu, mode, row);
+                for part in parts(each).take_while(|_| go_on().is_continue()) {
+                    self.column(k).evaluate_into(&of(k)[part.clone()], nu, mode, &mut row[part]);
+                }
             };
             if size < PARALLEL {
                 out.chunks_mut(each).enumerate().for_each(work);
             } else {
                 out.par_chunks_mut(each).enumerate().for_each(work);
             }
-        });
+        })?;
         Ok(out)
     }
 

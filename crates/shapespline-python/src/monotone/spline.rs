@@ -12,7 +12,7 @@ use crate::{
     error::{invalid, monotone_error},
     input::Query,
     output::{FloatArray, room, shaped},
-    work::detached,
+    work::in_parts,
 };
 
 /// A monotone interpolant: the base of `MonotoneQuartic` and `MonotoneQuintic`.
@@ -177,7 +177,7 @@ impl MonotoneSpline {
             Query::Many(y) => {
                 let values = y.values();
                 let size = room(values.len(), 1)?;
-                let out = detached(py, size, || f.inverse_many(values))
+                let out = in_parts(py, size, |part| f.inverse_many(&values[part]))?
                     .map_err(|e| monotone_error(&e))?;
                 Ok(shaped(py, out, y.shape())?.into_any())
             }

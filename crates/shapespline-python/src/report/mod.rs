@@ -13,7 +13,7 @@ use crate::{
     curve::boundary_object,
     error::subject_error,
     pickle::{self, Kind, Reduced},
-    work::detached,
+    work::{GoOn, interrupted, interruptible},
 };
 
 mod export;
@@ -59,9 +59,9 @@ impl ShapeReport {
 
     /// Checks a subject.
     pub(crate) fn make(py: Python<'_>, subject: Subject, asked: Asked) -> PyResult<Self> {
-        let check = || subject.judge(asked, |judge| judge.report());
-        let report = detached(py, subject.segments(), check).map_err(subject_error)?;
-        Ok(Self::of(report, subject, asked))
+        let check = |go_on: GoOn<'_>| subject.judge(asked, |judge| judge.report(go_on));
+        let report = interruptible(py, subject.segments(), check)?.map_err(subject_error)?;
+        Ok(Self::of(report.ok_or_else(interrupted)?, subject, asked))
     }
 
     /// Makes something of the records of every segment, criterion by criterion, in order.
@@ -71,11 +71,13 @@ impl ShapeReport {
         make: impl Fn(Record) -> T + Send + Sync,
     ) -> PyResult<Vec<T>> {
         let segments = self.subject.segments();
-        let records = detached(py, segments, || {
+        let records = interruptible(py, segments, |go_on| {
             self.subject.judge(self.asked, |judge| {
                 let of = |i: usize| {
                     let record = |criterion| make(judge.record(i, criterion));
-                    self.report.listed().iter().map(record).collect::<Vec<T>>()
+                    // What is missing after Ctrl-C nobody sees.
+                    let listed = go_on().is_continue().then(|| self.report.listed());
+                    listed.iter().flat_map(|listed| listed.iter()).map(record).collect::<Vec<T>>()
                 };
                 if segments <= 2 * BLOCK {
                     (0..segments).flat_map(of).collect()
@@ -84,7 +86,7 @@ impl ShapeReport {
                 }
             })
         });
-        records.map_err(subject_error)
+        records?.map_err(subject_error)
     }
 
     /// The verdict in a word.
@@ -94,8 +96,9 @@ impl ShapeReport {
 
     /// What the paper says of nodes and of oscillation.
     fn notes(&self, py: Python<'_>) -> PyResult<criteria::Notes> {
-        let make = || self.subject.judge(self.asked, |judge| judge.notes());
-        detached(py, self.subject.segments(), make).map_err(subject_error)
+        let make = |go_on: GoOn<'_>| self.subject.judge(self.asked, |judge| judge.notes(go_on));
+        let notes = interruptible(py, self.subject.segments(), make)?.map_err(subject_error)?;
+        notes.ok_or_else(interrupted)
     }
 }
 

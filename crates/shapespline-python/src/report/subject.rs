@@ -10,6 +10,7 @@ use shapespline::{
 use crate::{
     asked::Asked,
     curve::{Fitted, in_input},
+    work::GoOn,
 };
 
 /// A curve beside the points that it has to follow.
@@ -35,16 +36,17 @@ pub(crate) enum Judge<'a> {
 }
 
 impl Judge<'_> {
-    pub(crate) fn report(&self) -> ShapeReport {
-        match self {
+    /// The report; none after Ctrl-C.
+    pub(crate) fn report(&self, go_on: GoOn<'_>) -> Option<ShapeReport> {
+        Some(match self {
             Self::Own(checker, legs, curve) => curve.with_locations(checker.report(|i| legs[i])),
             Self::Other(checker, map) => {
-                let mut report = checker.report();
+                let mut report = checker.report_with(go_on)?;
                 report.violations.iter_mut().for_each(|r| r.segment = map.segment(r.segment));
                 report.undecided.iter_mut().for_each(|r| r.segment = map.segment(r.segment));
                 report
             }
-        }
+        })
     }
 
     pub(crate) fn record(&self, segment: usize, criterion: Criterion) -> Record {
@@ -59,11 +61,14 @@ impl Judge<'_> {
         }
     }
 
-    pub(crate) fn notes(&self) -> Notes {
-        match self {
-            Self::Own(checker, legs, curve) => curve.with_places(checker.notes(|i| legs[i])),
-            Self::Other(checker, map) => in_input(map, checker.notes()),
-        }
+    /// The notes; none after Ctrl-C.
+    pub(crate) fn notes(&self, go_on: GoOn<'_>) -> Option<Notes> {
+        Some(match self {
+            Self::Own(checker, legs, curve) => {
+                curve.with_places(checker.notes_with(|i| legs[i], go_on)?)
+            }
+            Self::Other(checker, map) => in_input(map, checker.notes_with(go_on)?),
+        })
     }
 }
 

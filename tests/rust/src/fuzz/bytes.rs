@@ -181,6 +181,8 @@ impl<'a> Bytes<'a> {
             0 => Parametrization::Uniform,
             1 | 2 => Parametrization::Chordal,
             3 => Parametrization::Centripetal,
+            // Mostly one that is allowed.
+            4 if self.below(8) > 0 => Parametrization::Exponent(self.unscaled().abs() % 1.0),
             4 => Parametrization::Exponent(self.unscaled()),
             _ => {
                 let n = if self.below(16) == 0 { self.below(n + 2) } else { n };
