@@ -42,6 +42,15 @@ def test_published_energies(name, paper, least):
     assert best.diagnostics.energy == best.bending_energy
 
 
+@pytest.mark.parametrize("size", [1, -1, 1e-80])
+def test_straight_data_beside_a_jump_stay_straight(size):
+    x = np.arange(41.0)
+    f = ss.MonotoneQuintic(x, size * (x + 1000 * (x > 20)))
+    for q, shift in ((np.linspace(0, 10, 501), 0), (np.linspace(31, 40, 501), 1000)):
+        assert abs(f(q) / size - q - shift).max() < 2.6e-5
+        assert abs(f(q, 1) / size - 1).max() < 5e-4
+
+
 @pytest.mark.parametrize(("family", "options"), FAMILIES)
 @pytest.mark.parametrize("n", [2, 3, 7, 50, 300])
 def test_monotone_to_the_last_bits_and_within_the_data(rng, family, options, n):

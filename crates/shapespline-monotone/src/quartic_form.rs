@@ -114,9 +114,33 @@ pub(crate) fn minima(c: &[f64; 5]) -> [Option<Minimum>; 2] {
     found
 }
 
+/// The least value over [0, 1], and where it is.
+pub(crate) fn lowest(c: &[f64; 5]) -> (f64, f64) {
+    let ends = if c[0] <= c[4] { (0.0, c[0]) } else { (1.0, c[4]) };
+    let lower = |a: (f64, f64), m: &Minimum| if m.value < a.1 { (m.t, m.value) } else { a };
+    minima(c).iter().flatten().fold(ends, lower)
+}
+
 /// The least value over [0, 1].
 pub(crate) fn least(c: &[f64; 5]) -> f64 {
-    minima(c).iter().flatten().fold(c[0].min(c[4]), |a, m| a.min(m.value))
+    lowest(c).1
+}
+
+/// The coefficients, of degree four again, of p/(tᵃ(1−t)ᵇ) from those of p, the first a and the last b of which are 0.
+pub(crate) fn without_zeros(p: &[f64; 5], [a, b]: [usize; 2]) -> [f64; 5] {
+    const BINOMIAL: [f64; 5] = [1.0, 4.0, 6.0, 4.0, 1.0];
+    if a + b == 0 {
+        return *p;
+    }
+    let mut q: [f64; 5] =
+        std::array::from_fn(|k| if k + a + b > 4 { 0.0 } else { BINOMIAL[k + a] * p[k + a] });
+    // Times t + (1−t) for every zero.
+    for _ in 0..a + b {
+        for k in (1..5).rev() {
+            q[k] += q[k - 1];
+        }
+    }
+    std::array::from_fn(|k| q[k] / BINOMIAL[k])
 }
 
 /// Whether `p + tolerance ≥ 0` on all of [0, 1], decided on Bernstein coefficients: a part whose coefficients are

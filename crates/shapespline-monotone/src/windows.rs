@@ -10,12 +10,12 @@
 use crate::data::Data;
 use crate::energy::{Fairness, is_flat};
 use crate::interrupt::GoOn;
-use crate::optimal::{self, Optimum, coefficients};
+use crate::optimal::{self, Optimum, Prescribed, coefficients};
 use crate::quartic_form::certified_nonnegative;
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// Nodes a window answers for, and nodes it looks beyond on either side: what is beyond counts less than 4⁻⁶.
+/// Nodes a window answers for, and nodes it looks beyond on either side.
 const CORE: usize = 64;
 const OVERLAP: usize = 6;
 
@@ -40,15 +40,24 @@ struct Window {
 
 /// Slopes and second derivatives of least energy; none where the question whether to go on, asked once a window,
 /// was answered with no. O(N), in parallel.
-pub(crate) fn optimise(data: &Data, fairness: Fairness, go_on: GoOn<'_>) -> Option<Optimum> {
+pub(crate) fn optimise(
+    data: &Data,
+    fairness: Fairness,
+    prescribed: Option<Prescribed<'_>>,
+    go_on: GoOn<'_>,
+) -> Option<Optimum> {
     let n = data.len();
     if n <= CORE + 2 * OVERLAP {
-        return Some(optimal::optimise(data, fairness));
+        return Some(optimal::optimise(data, fairness, prescribed));
     }
     // A segment where the energy's own minimiser falls settles it for all, and what is beyond sixteen nodes hardly
     // matters there: most long data need no elimination of their whole length.
-    if (n <= PROBE || optimal::rises(&part(data, 0..PROBE), fairness, PROBE - 16))
-        && let Some(done) = optimal::unconstrained(data, fairness)
+    let of = |segments: &Range<usize>| prescribed.map(|p| p.part(segments));
+    let probe = 0..PROBE.min(n);
+    let rises =
+        |_| optimal::unconstrained(&part(data, probe.clone()), fairness, of(&probe), PROBE - 16);
+    if (n <= PROBE || rises(()).is_some())
+        && let Some(done) = optimal::unconstrained(data, fairness, prescribed, n)
     {
         return Some(done);
     }
@@ -73,7 +82,7 @@ pub(crate) fn optimise(data: &Data, fairness: Fairness, go_on: GoOn<'_>) -> Opti
         start = end;
     }
     let solve = |segments: Range<usize>| {
-        let optimum = optimal::optimise(&part(data, segments.clone()), fairness);
+        let optimum = optimal::optimise(&part(data, segments.clone()), fairness, of(&segments));
         Window { segments, optimum }
     };
     let solve_or_stop = |segments| go_on().is_continue().then(|| solve(segments));
@@ -183,8 +192,8 @@ mod tests {
             let data = Data::new(&x, &y).unwrap();
             let total = |o: &Optimum| energy::total(&data, Fairness::Bending, &o.d, &o.s);
             let go_on: GoOn<'_> = &|| std::ops::ControlFlow::Continue(());
-            let whole = optimal::optimise(&data, Fairness::Bending);
-            let parts = optimise(&data, Fairness::Bending, go_on).unwrap();
+            let whole = optimal::optimise(&data, Fairness::Bending, None);
+            let parts = optimise(&data, Fairness::Bending, None, go_on).unwrap();
             let ratio = total(&parts) / total(&whole);
             assert!((0.996..1.004).contains(&ratio), "case {case}: {ratio}");
             assert!(parts.converged && whole.converged, "case {case}: {} {}", parts.gap, whole.gap);

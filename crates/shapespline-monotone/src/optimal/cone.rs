@@ -57,7 +57,9 @@ pub(super) struct Given {
     /// 1/Δ and h/(4Δ): from (d, s) to the dimensionless unknowns. 0 where nothing is free or no segment is.
     pub(super) a: Lane,
     pub(super) b: Lane,
-    /// The energy's weight in units of the largest.
+    /// The unit of the segment's multipliers, in units of the largest energy weight; 0 where `a` is.
+    pub(super) unit: Lane,
+    /// The energy's weight in that unit: at most 1.
     pub(super) e: Lane,
     /// 1 where nothing is free or no segment is, to stand for the constant quartic; else 0.
     pub(super) idle: Lane,
@@ -65,7 +67,13 @@ pub(super) struct Given {
     pub(super) fixed: [Lane; 4],
 }
 
-/// The iterate: moments, and the two matrices' upper triangles (X₁: 00 01 02 11 12 22, X₂: 00 01 11).
+impl Given {
+    pub(super) const IDLE: Self =
+        Self { a: ZERO, b: ZERO, unit: ZERO, e: ZERO, idle: [1.0; W], fixed: [ZERO; 4] };
+}
+
+/// The iterate: moments in the segment's unit, and the two matrices' upper triangles (X₁: 00 01 02 11 12 22,
+/// X₂: 00 01 11).
 #[derive(Debug, Clone, Copy)]
 pub(super) struct State {
     pub(super) y: [Lane; 5],
@@ -99,6 +107,10 @@ pub(super) struct Aim {
 }
 
 const ZERO: Lane = [0.0; W];
+
+impl State {
+    pub(super) const NONE: Self = Self { y: [ZERO; 5], x: [ZERO; 9] };
+}
 
 impl Factors {
     pub(super) const EMPTY: Self =
@@ -166,7 +178,7 @@ pub(super) fn factorise(given: &Given, state: &State, out: &mut Factors, aim: &m
             (m[14] - a4 * c[3]) + fixed[3],
         ]);
         let t = c.map(|c| MEAN * c);
-        let (a, b, e) = (given.a[l], given.b[l], given.e[l]);
+        let (a, b, e, unit) = (given.a[l], given.b[l], given.e[l], given.unit[l]);
         // AᵀR⁻¹A in the dimensionless unknowns, and the energy.
         let (r01, r11, r03, r13) = (4.0 * r[1], 16.0 * r[4], 4.0 * r[2], 16.0 * r[5]);
         let (r14, r33, r34) = (4.0 * r[6], 16.0 * r[7], 4.0 * r[8]);
@@ -184,7 +196,8 @@ pub(super) fn factorise(given: &Given, state: &State, out: &mut Factors, aim: &m
         ];
         let scale =
             [(a, a), (a, b), (a, a), (a, b), (b, b), (b, a), (b, b), (a, a), (a, b), (b, b)];
-        let block = std::array::from_fn(|j| scale[j].0 * (scale[j].1 * (k[j] + e * ENERGY[j])));
+        let block =
+            std::array::from_fn(|j| scale[j].0 * (scale[j].1 * (unit * (k[j] + e * ENERGY[j]))));
         put(&mut out.zi, l, zi);
         put(&mut out.column, l, c);
         out.pivot[l] = pivot;
@@ -201,7 +214,7 @@ pub(super) fn factorise(given: &Given, state: &State, out: &mut Factors, aim: &m
 fn load(given: &Given, l: usize, y: &[f64; 5], dn: [f64; 4]) -> [f64; 4] {
     let n = [y[0] - OUTER * y[2], y[1] - INNER * y[2], y[3] - INNER * y[2], y[4] - OUTER * y[2]];
     let f = force(std::array::from_fn(|k| n[k] + dn[k]));
-    let (a, b, e) = (given.a[l], given.b[l], given.e[l]);
+    let (a, b, e) = (given.unit[l] * given.a[l], given.unit[l] * given.b[l], given.e[l]);
     [
         a * (f[0] + e * LOAD[0]),
         b * (f[1] + e * LOAD[1]),
@@ -316,7 +329,7 @@ pub(super) fn gap(state: &State, out: &mut Lane) {
 
 /// Multipliers of uniform density and the given mass, and the matrices in the centre opposite them.
 pub(super) fn start(given: &Given, mass: f64) -> State {
-    let mut state = State { y: [ZERO; 5], x: [ZERO; 9] };
+    let mut state = State::NONE;
     for l in 0..W {
         let fixed = get(&given.fixed, l);
         let mut y = [0.2 * mass, 0.05 * mass, mass / MEAN, 0.05 * mass, 0.2 * mass];
@@ -353,7 +366,7 @@ pub(super) fn dual(given: &Given, state: &State, out: &mut [Lane; 4]) {
     }
 }
 
-/// The energy at `w`, and the segment's part of its distance from the bound at `u`.
+/// The energy at `w`, and the segment's part of its distance from the bound at `u`, in the segment's unit.
 pub(super) fn distance(given: &Given, state: &State, u: &[Lane; 4], w: &[Lane; 4]) -> (Lane, Lane) {
     let (mut energy, mut gap) = (ZERO, ZERO);
     for l in 0..W {

@@ -1,24 +1,32 @@
 //! The iteration's working memory and one step of it.
 
-use super::cone::{self, Aim, Factors, Given, Lane, State, W};
+use super::cone::{self, Aim, Factors, Given, State, W};
+use super::nodes::{self, Fixed, NodeSystem, fixed_by_data, gather, largest, local, pair};
+use super::{Prescribed, coefficients};
 use crate::data::Data;
-use crate::energy::{self, Fairness, HESSIAN, is_flat};
-use shapespline_banded::block_tridiagonal::BlockElimination;
+use crate::energy::{Fairness, is_flat};
+use crate::quartic_form::{basis, certified_nonnegative, dot, lowest, without_zeros};
 
 /// Share of the way to the boundary that a step may go.
 const FRACTION: f64 = 0.98;
 /// What a step aims at, in units of the current barrier parameter.
-const AIM: f64 = 0.08;
-/// After a step shorter than this (the iterate has lost the centre) the next one aims at [`CENTRE`] instead: without,
-/// one fit in a thousand over twelve decades does not end.
-const SHORT: f64 = 0.3;
+const AIM: f64 = 0.04;
+/// After a step shorter than the first (the iterate has lost the centre) the next one aims at [`CENTRE`] instead:
+/// without, one fit in a thousand over twelve decades does not end. Up to the second it aims at something between.
+const SHORT: [f64; 2] = [0.25, 0.4];
 const CENTRE: f64 = 0.8;
-/// Shares of the way to the strictly feasible point that are tried when the primal point is not feasible.
-const SHARES: [f64; 8] = [0.0, 1e-12, 1e-9, 1e-6, 1e-4, 1e-3, 5e-3, 2e-2];
+/// The largest share of the way to the strictly feasible point that the primal point may be moved.
+pub(super) const FAR: f64 = 2e-2;
 /// Mass of a segment's multipliers, in units of the mean of tr XZ, from which on it counts as held at 0 somewhere.
 const HELD: f64 = 10.0;
-/// Energy weights below this share of the largest count as this: no unknown may lose its energy altogether.
-const LEAST: f64 = 1e-290;
+/// A segment's multipliers are measured in the largest energy weight near it, which counts by this factor less with
+/// every segment between: what happens at a node is felt at the next by about so much. In one unit for all, segments
+/// of little energy would stay at the centre of their cones until those of the most energy have ended.
+const DECAY: f64 = 0.25;
+
+/// Segments of less energy weight, in their unit, are judged as if they had this much: their share in the range is far
+/// below what is left of the residual's rounding errors, on which a result must not depend.
+const LIGHT: f64 = 1e-11;
 
 /// Working memory: kept from fit to fit, so that a fit allocates nothing but its result.
 #[derive(Default)]
@@ -27,83 +35,120 @@ pub(super) struct Problem {
     pub(super) n: usize,
     pub(super) given: Vec<Given>,
     pub(super) states: Vec<State>,
-    factors: Vec<Factors>,
+    pub(super) factors: Vec<Factors>,
     /// The predictor's aims and the corrector's.
-    aims: [Vec<Aim>; 2],
-    changes: Vec<State>,
-    /// What is free at the nodes, and whether everything is.
-    free: Vec<(bool, bool)>,
-    all_free: bool,
+    pub(super) aims: [Vec<Aim>; 2],
+    pub(super) changes: Vec<State>,
+    /// What is fixed at the nodes, and whether nothing is.
+    pub(super) fixed: Vec<Fixed>,
+    pub(super) all_free: bool,
     /// The dual point: the unknowns that the multipliers imply.
     pub(super) v: Vec<[f64; 2]>,
     /// A strictly feasible point, the primal point, and one between the two.
     pub(super) inside: Vec<[f64; 2]>,
-    w: Vec<[f64; 2]>,
+    pub(super) w: Vec<[f64; 2]>,
     pub(super) best: Vec<[f64; 2]>,
     /// The shorter length of the last step.
     length: f64,
-    /// tr XZ of all, and of the segments that count.
+    /// tr XZ of all segments, each in its own unit.
     sum: f64,
-    pub(super) gap: f64,
     /// The point that Newton's step ends at.
-    ahead: Vec<[f64; 2]>,
+    pub(super) ahead: Vec<[f64; 2]>,
     rhs: Vec<[f64; 2]>,
     /// The energy's own Hessian, eliminated.
-    natural: BlockElimination,
-    system: BlockElimination,
+    natural: NodeSystem,
+    pub(super) system: NodeSystem,
     /// The largest energy weight.
-    pub(super) scale: f64,
+    scale: f64,
 }
 
 impl Problem {
     /// Set up.
-    pub(super) fn pose(&mut self, data: &Data, fairness: Fairness) {
+    pub(super) fn pose(
+        &mut self,
+        data: &Data,
+        fairness: Fairness,
+        prescribed: Option<Prescribed<'_>>,
+    ) {
         let n = data.len();
         let chunks = n.div_ceil(W);
         self.n = n;
-        self.free.clear();
-        self.free.extend((0..=n).map(|i| super::free(&data.delta, i)));
-        self.all_free = self.free.iter().all(|f| f.0 && f.1);
+        self.fixed.clear();
+        self.inside.clear();
+        match prescribed {
+            Some(Prescribed { fixed, inside }) => {
+                self.fixed.extend_from_slice(fixed);
+                self.inside.extend_from_slice(inside);
+            }
+            None => {
+                self.fixed.extend((0..=n).map(|i| fixed_by_data(&data.delta, i)));
+                self.inside.extend((0..=n).map(|i| super::interior(data, i)));
+            }
+        }
+        self.all_free = self.fixed.iter().flatten().all(|f| f.is_nan());
         self.scale = largest(data, fairness);
         self.given.clear();
         self.given.extend((0..chunks).map(|j| {
-            let mut given = Given {
-                a: [0.0; W],
-                b: [0.0; W],
-                e: [0.0; W],
-                idle: [1.0; W],
-                fixed: [[0.0; W]; 4],
-            };
+            let mut given = Given::IDLE;
             for l in 0..W.min(n - j * W) {
                 let i = j * W + l;
-                let (p, q) = (self.free[i], self.free[i + 1]);
-                if is_flat(data.delta[i]) || !(p.1 || q.1) {
+                let (p, q) = (self.fixed[i], self.fixed[i + 1]);
+                if is_flat(data.delta[i]) || !p.iter().chain(&q).any(|f| f.is_nan()) {
                     continue;
                 }
-                (given.a[l], given.b[l], given.e[l]) = units(data, fairness, self.scale, i);
+                (given.a[l], given.b[l], given.e[l]) = nodes::units(data, fairness, self.scale, i);
                 given.idle[l] = 0.0;
-                for (k, free) in [p.0, p.1, q.1, q.0].into_iter().enumerate() {
-                    given.fixed[k][l] = f64::from(u8::from(!free));
+                let vanish = [p[0] == 0.0, p == [0.0; 2], q == [0.0; 2], q[0] == 0.0];
+                for (k, vanishes) in vanish.into_iter().enumerate() {
+                    given.fixed[k][l] = f64::from(u8::from(vanishes));
                 }
             }
             given
         }));
-        for list in [
-            &mut self.v,
-            &mut self.inside,
-            &mut self.w,
-            &mut self.best,
-            &mut self.ahead,
-            &mut self.rhs,
-        ] {
+        self.choose_units();
+        let size = chunks * W + 1;
+        self.inside.resize(size, [0.0; 2]);
+        for list in [&mut self.v, &mut self.w, &mut self.best, &mut self.ahead, &mut self.rhs] {
             list.clear();
-            list.resize(chunks * W + 1, [0.0; 2]);
+            list.resize(size, [0.0; 2]);
         }
     }
 
-    /// The energy's own minimiser, its elimination kept.
-    pub(super) fn unconstrained(&mut self, data: &Data, fairness: Fairness) -> &[[f64; 2]] {
-        natural(&mut self.natural, data, fairness, self.scale)
+    /// The unit of every segment's multipliers from the energy weights, and the weights in it.
+    fn choose_units(&mut self) {
+        let mut sweep = |backwards: bool| {
+            let mut carry = 0.0f64;
+            for k in 0..self.n {
+                let i = if backwards { self.n - 1 - k } else { k };
+                let (given, l) = (&mut self.given[i / W], i % W);
+                // What has nothing free keeps the two sides apart.
+                carry = if given.idle[l] == 0.0 {
+                    given.unit[l].max(given.e[l]).max(DECAY * carry)
+                } else {
+                    0.0
+                };
+                given.unit[l] = carry;
+            }
+        };
+        sweep(false);
+        sweep(true);
+        for given in &mut self.given {
+            for l in (0..W).filter(|&l| given.idle[l] == 0.0) {
+                given.e[l] /= given.unit[l];
+            }
+        }
+    }
+
+    /// Put the energy's own minimiser to `v`; its elimination is kept.
+    pub(super) fn minimise_unconstrained(&mut self, data: &Data, fairness: Fairness) {
+        let fixed = |i: usize| self.fixed[i];
+        let v = nodes::natural(&mut self.natural, data, fairness, self.scale, fixed);
+        self.v[..=self.n].copy_from_slice(v);
+        // As a point to be judged: no moments hold it.
+        self.w.copy_from_slice(&self.v);
+        self.states.clear();
+        self.states.resize(self.given.len(), cone::State::NONE);
+        self.sum = 0.0;
     }
 
     /// Start in the centre of the cones, the primal point at `inside`.
@@ -123,42 +168,23 @@ impl Problem {
     /// One step of predictor and corrector. The dual and the primal step's lengths.
     pub(super) fn step(&mut self) -> [f64; 2] {
         let n = self.n;
-        let [predictor, corrector] = &mut self.aims;
-        let free = (!self.all_free).then_some(&self.free[..]);
+        let predictor = &mut self.aims[0];
         for (j, given) in self.given.iter().enumerate() {
             cone::factorise(given, &self.states[j], &mut self.factors[j], &mut predictor[j]);
         }
-        let aim = if self.length < SHORT { CENTRE } else { AIM };
-        let mu = aim * self.sum / (5 * W * self.given.len()) as f64;
-        let mut system = std::mem::take(&mut self.system);
-        system.clear();
-        let mut diagonal = [0.0; 3];
-        let mut rhs = [0.0; 2];
-        for (j, (f, aim)) in self.factors.iter().zip(&*predictor).enumerate() {
-            let (k, r) = (&f.block, &aim.rhs);
-            for l in 0..W.min(n - j * W) {
-                let d = [diagonal[0] + k[0][l], diagonal[1] + k[1][l], diagonal[2] + k[4][l]];
-                let c = [k[2][l], k[3][l], k[5][l], k[6][l]];
-                let right = [rhs[0] + r[0][l], rhs[1] + r[1][l]];
-                let (d, c, right) = pinned(pins(free, j * W + l), d, c, right);
-                system.push(d, c, right);
-                diagonal = [k[7][l], k[8][l], k[9][l]];
-                rhs = [r[2][l], r[3][l]];
-            }
-        }
-        let (d, c, right) = pinned(pins(free, n), diagonal, [0.0; 4], rhs);
-        system.push(d, c, right);
-        self.ahead[..=n].copy_from_slice(system.solve());
+        let lost = ((SHORT[1] - self.length) / (SHORT[1] - SHORT[0])).clamp(0.0, 1.0);
+        let mu = (AIM + lost * (CENTRE - AIM)) * self.mean();
+        self.eliminate();
         self.rhs.fill([0.0; 2]);
+        let [predictor, corrector] = &mut self.aims;
         for (j, given) in self.given.iter().enumerate() {
             let ahead = (&predictor[j], &local(given, &self.ahead, j));
             let aim = &mut corrector[j];
             cone::correct(given, &self.states[j], &self.factors[j], ahead, mu, aim);
             gather(&mut self.rhs, j, &aim.rhs);
         }
-        self.mask();
-        self.ahead[..=n].copy_from_slice(system.solve_again(|i| self.rhs[i]));
-        self.system = system;
+        let fixed = (!self.all_free).then_some(&self.fixed[..]);
+        self.ahead[..=n].copy_from_slice(self.system.solve_again(fixed, &self.rhs));
         // No longer than Newton's step, and a little short of the boundary.
         let mut most = [1.0 / FRACTION; 2];
         for (j, given) in self.given.iter().enumerate() {
@@ -168,15 +194,12 @@ impl Problem {
         }
         // A step that would end on the boundary, or just inside it, stops short of it: the inverses need the room.
         let step = most.map(|m| (FRACTION * m).min(1.0));
-        (self.sum, self.gap) = (0.0, 0.0);
-        for ((state, change), given) in self.states.iter_mut().zip(&self.changes).zip(&self.given) {
+        self.sum = 0.0;
+        for (state, change) in self.states.iter_mut().zip(&self.changes) {
             cone::advance(state, change, step);
             let mut gap = [0.0; W];
             cone::gap(state, &mut gap);
-            for l in 0..W {
-                self.sum += gap[l];
-                self.gap += (1.0 - given.idle[l]) * gap[l];
-            }
+            self.sum += gap.iter().sum::<f64>();
         }
         self.length = step[0].min(step[1]);
         for (w, ahead) in self.w.iter_mut().zip(&self.ahead) {
@@ -185,28 +208,36 @@ impl Problem {
         step
     }
 
-    /// Nothing acts on what is fixed.
-    fn mask(&mut self) {
-        if !self.all_free {
-            for (r, free) in self.rhs.iter_mut().zip(&self.free) {
-                *r = [if free.0 { r[0] } else { 0.0 }, if free.1 { r[1] } else { 0.0 }];
+    /// Assemble the factors' blocks and the predictor's right-hand sides, eliminate, and solve for the point ahead.
+    pub(super) fn eliminate(&mut self) {
+        let (n, predictor) = (self.n, &self.aims[0]);
+        let fixed = (!self.all_free).then_some(&self.fixed[..]);
+        self.system.clear();
+        let mut diagonal = [0.0; 3];
+        let mut rhs = [0.0; 2];
+        for (j, (f, aim)) in self.factors.iter().zip(predictor).enumerate() {
+            let (k, r) = (&f.block, &aim.rhs);
+            for l in 0..W.min(n - j * W) {
+                let d = [diagonal[0] + k[0][l], diagonal[1] + k[1][l], diagonal[2] + k[4][l]];
+                let c = [k[2][l], k[3][l], k[5][l], k[6][l]];
+                let right = [rhs[0] + r[0][l], rhs[1] + r[1][l]];
+                self.system.push(pair(fixed, j * W + l), d, c, right);
+                diagonal = [k[7][l], k[8][l], k[9][l]];
+                rhs = [r[2][l], r[3][l]];
             }
         }
+        self.system.push(pair(fixed, n), diagonal, [0.0; 4], rhs);
+        self.ahead[..=n].copy_from_slice(self.system.solve());
     }
 
-    /// The primal point's energy.
-    pub(super) fn energy(&self) -> f64 {
-        let mut sum = 0.0;
-        for (j, given) in self.given.iter().enumerate() {
-            let w = local(given, &self.w, j);
-            sum += cone::distance(given, &self.states[j], &w, &w).0.iter().sum::<f64>();
-        }
-        sum
+    /// The barrier parameter: the mean of tr XZ over the cones' orders, every segment in its own unit.
+    pub(super) fn mean(&self) -> f64 {
+        self.sum / (5 * W * self.given.len()) as f64
     }
 
     /// Segments whose multipliers have far more mass than the barrier alone would give them.
     pub(super) fn active(&self) -> usize {
-        let least = HELD * self.sum / (W * self.given.len()) as f64;
+        let least = HELD * 5.0 * self.mean();
         let mut count = 0;
         for (state, given) in self.states.iter().zip(&self.given) {
             let held = |l: usize| cone::MEAN * state.y[2][l] > least;
@@ -215,150 +246,76 @@ impl Problem {
         count
     }
 
-    /// Put to `best` the primal point, or one between it and the strictly feasible one, that is feasible without
-    /// doubt. None when only points far from it are.
-    pub(super) fn feasible(&mut self, data: &Data) -> bool {
-        for share in SHARES {
-            for ((b, w), i) in self.best.iter_mut().zip(&self.w).zip(&self.inside) {
-                *b = [w[0] + share * (i[0] - w[0]), w[1] + share * (i[1] - w[1])];
+    /// Put to `best` the primal point, moved towards the strictly feasible one just as far as makes it feasible without
+    /// doubt. The share of the way; more than [`FAR`] where that would be too far. It is a continuous function of the
+    /// point, up to rounding.
+    pub(super) fn feasible(&mut self, data: &Data) -> f64 {
+        let mut share = 0.0;
+        for i in 0..self.n {
+            let (h, delta) = (data.h[i], data.delta[i]);
+            if is_flat(delta) {
+                continue;
             }
-            if super::certified(data, &self.best) {
-                return true;
+            let at =
+                |share: f64| coefficients(h, delta, self.mix(i, share), self.mix(i + 1, share));
+            let mut margin = 1e-15;
+            while !certified_nonnegative(&at(share), 0.0) {
+                // What is feasible at a share is feasible at every larger one: the least share of all grows from
+                // segment to segment, by Newton's method on the least value, which is concave in the share.
+                let order = self.order(i);
+                let (t, value) = lowest(&without_zeros(&at(share), order));
+                let inner = dot(&without_zeros(&at(1.0), order), &basis(t));
+                let step = (1.0 - share) * (-value).max(0.0) / (inner - value);
+                share += step * (1.0 + 1e-6) + margin;
+                margin *= 4.0;
+                if !(share <= FAR) {
+                    return 1.0;
+                }
             }
         }
-        false
+        for i in 0..=self.n {
+            self.best[i] = self.mix(i, share);
+        }
+        share
     }
 
-    /// The energy of `best` and its distance from the bound that the multipliers give, exactly:
-    /// `E(b) − D(y) = Σ yᵢ·pᵢ(b) + ½‖b − v‖²` with v the unknowns that y implies. O(n).
-    pub(super) fn certificate(&mut self) -> (f64, f64) {
+    /// Node i of the point at this share of the way from the primal point to the strictly feasible one.
+    #[inline]
+    fn mix(&self, i: usize, share: f64) -> [f64; 2] {
+        let (w, inside) = (self.w[i], self.inside[i]);
+        [w[0] + share * (inside[0] - w[0]), w[1] + share * (inside[1] - w[1])]
+    }
+
+    /// How many of p's coefficients are fixed at 0 at either end of a segment.
+    fn order(&self, i: usize) -> [usize; 2] {
+        let (given, l) = (&self.given[i / W], i % W);
+        let vanishes = |k: usize| usize::from(given.fixed[k][l] != 0.0);
+        [vanishes(0) + vanishes(1), vanishes(2) + vanishes(3)]
+    }
+
+    /// The energy of `best`, its distance from the bound that moments y give, exactly, and the largest share that a
+    /// segment has in it, relative to the geometric mean of its own energy weight and its unit:
+    /// `E(b) − D(y) = Σ yᵢ·pᵢ(b) + ½‖b − v‖²` with v the unknowns that y implies.
+    /// O(n).
+    pub(super) fn certificate(&mut self) -> (f64, f64, f64) {
         self.rhs.fill([0.0; 2]);
         for (j, given) in self.given.iter().enumerate() {
             let mut r = [[0.0; W]; 4];
             cone::dual(given, &self.states[j], &mut r);
             gather(&mut self.rhs, j, &r);
         }
-        self.mask();
-        self.v[..=self.n].copy_from_slice(self.natural.solve_again(|i| self.rhs[i]));
-        let (mut energy, mut gap) = (0.0, 0.0);
+        let fixed = (!self.all_free).then_some(&self.fixed[..]);
+        self.v[..=self.n].copy_from_slice(self.natural.solve_again(fixed, &self.rhs));
+        let (mut energy, mut gap, mut worst) = (0.0, 0.0, 0.0f64);
         for (j, given) in self.given.iter().enumerate() {
             let (v, w) = (local(given, &self.v, j), local(given, &self.best, j));
             let (e, g) = cone::distance(given, &self.states[j], &v, &w);
-            energy += e.iter().sum::<f64>();
-            gap += g.iter().sum::<f64>();
+            for l in 0..W {
+                energy += given.unit[l] * e[l];
+                gap += given.unit[l] * g[l];
+                worst = worst.max(g[l] / given.e[l].max(LIGHT).sqrt());
+            }
         }
-        (energy, gap)
+        (energy, gap, worst)
     }
-}
-
-/// Add a chunk's right-hand side, chunk after chunk.
-#[inline]
-fn gather(rhs: &mut [[f64; 2]], j: usize, r: &[Lane; 4]) {
-    for l in 0..W {
-        let i = j * W + l;
-        rhs[i] = [rhs[i][0] + r[0][l], rhs[i][1] + r[1][l]];
-        rhs[i + 1] = [r[2][l], r[3][l]];
-    }
-}
-
-/// The largest energy weight.
-pub(super) fn largest(data: &Data, fairness: Fairness) -> f64 {
-    let segments = data.h.iter().zip(&data.delta).filter(|(_, delta)| !is_flat(**delta));
-    segments.fold(0.0, |most, (h, delta)| most.max(energy::weight(fairness, *h, *delta)))
-}
-
-/// 1/Δ and h/(4Δ), which make d and s dimensionless, and the energy's weight in units of the largest.
-#[inline]
-fn units(data: &Data, fairness: Fairness, scale: f64, i: usize) -> (f64, f64, f64) {
-    let (h, delta) = (data.h[i], data.delta[i]);
-    if is_flat(delta) {
-        return (0.0, 0.0, 0.0);
-    }
-    let a = 1.0 / delta;
-    (a, 0.25 * h * a, (energy::weight(fairness, h, delta) / scale).max(LEAST))
-}
-
-/// The energy's own minimiser. O(n).
-pub(super) fn natural<'a>(
-    system: &'a mut BlockElimination,
-    data: &Data,
-    fairness: Fairness,
-    scale: f64,
-) -> &'a [[f64; 2]] {
-    let n = data.len();
-    system.clear();
-    let mut diagonal = [0.0; 3];
-    let mut rhs = [0.0; 2];
-    let mut own = super::free(&data.delta, 0);
-    for i in 0..=n {
-        let mut right = ([0.0; 3], [0.0; 4], [0.0; 2], (false, false));
-        if i < n {
-            let (a, b, e) = units(data, fairness, scale, i);
-            let e = e / 35.0;
-            let k = |p: usize, q: usize| e * HESSIAN[p][q];
-            let load = |p: usize| k(p, 0) + k(p, 2);
-            diagonal[0] += a * (a * k(0, 0));
-            diagonal[1] += a * (b * k(0, 1));
-            diagonal[2] += b * (b * k(1, 1));
-            rhs[0] += a * load(0);
-            rhs[1] += b * load(1);
-            right = (
-                [a * (a * k(2, 2)), a * (b * k(2, 3)), b * (b * k(3, 3))],
-                [a * (a * k(0, 2)), a * (b * k(0, 3)), b * (a * k(1, 2)), b * (b * k(1, 3))],
-                [a * load(2), b * load(3)],
-                super::free(&data.delta, i + 1),
-            );
-        }
-        let (d, c, r) = pinned(Some([own, right.3]), diagonal, right.1, rhs);
-        system.push(d, c, r);
-        (diagonal, rhs, own) = (right.0, right.2, right.3);
-    }
-    system.solve()
-}
-
-/// The unknowns of a chunk's segments without dimension.
-#[inline]
-fn local(given: &Given, v: &[[f64; 2]], j: usize) -> [Lane; 4] {
-    let mut u = [[0.0; W]; 4];
-    let v: &[[f64; 2]] = &v[j * W..=j * W + W];
-    for l in 0..W {
-        let (a, b, idle) = (given.a[l], given.b[l], given.idle[l]);
-        u[0][l] = a * v[l][0] + idle;
-        u[1][l] = b * v[l][1];
-        u[2][l] = a * v[l + 1][0] + idle;
-        u[3][l] = b * v[l + 1][1];
-    }
-    u
-}
-
-/// What is free at a node and the next; None when everything is.
-#[inline]
-fn pins(free: Option<&[(bool, bool)]>, i: usize) -> Option<[(bool, bool); 2]> {
-    free.map(|free| [free[i], free.get(i + 1).copied().unwrap_or_default()])
-}
-
-/// A row of the system with the fixed unknowns' rows made the identity, their right-hand sides 0.
-#[inline]
-fn pinned(
-    free: Option<[(bool, bool); 2]>,
-    mut d: [f64; 3],
-    mut c: [f64; 4],
-    mut r: [f64; 2],
-) -> ([f64; 3], [f64; 4], [f64; 2]) {
-    let Some([own, next]) = free else { return (d, c, r) };
-    if !own.0 {
-        (d[0], d[1], r[0]) = (1.0, 0.0, 0.0);
-        (c[0], c[1]) = (0.0, 0.0);
-    }
-    if !own.1 {
-        (d[2], d[1], r[1]) = (1.0, 0.0, 0.0);
-        (c[2], c[3]) = (0.0, 0.0);
-    }
-    if !next.0 {
-        (c[0], c[2]) = (0.0, 0.0);
-    }
-    if !next.1 {
-        (c[1], c[3]) = (0.0, 0.0);
-    }
-    (d, c, r)
 }

@@ -209,8 +209,8 @@ impl MonotoneQuartic {
 /// Equation (16), and the program (17), (20), (22), (23) of Ng, Kong and Ong, *A class of Bézier-like
 /// splines in smooth monotone interpolation* (paper 003), as a strictly convex box program in the
 /// second derivatives; with optimal slopes an interior-point method on slopes and second derivatives,
-/// within 0.5 % of the least energy and never above the paper's. Data that are not monotone are fitted
-/// piecewise; flats stay flat. Cost O(n).
+/// within 0.5 % of the least energy, small segments beside large ones included; the result does not jump
+/// as the data move. Data that are not monotone are fitted piecewise; flats stay flat. Cost O(n).
 ///
 /// Examples
 /// --------
