@@ -87,6 +87,7 @@ class _Report(TypedDict):
     ok: bool
     margin: float | None
     counts: dict[_Criterion, _Count]
+    resolution: float
     coplanarity: float
     collinearity: float
     tolerance: float
@@ -139,6 +140,7 @@ class SpaceCurve:
         self,
         criteria: _Criterion | Iterable[_Criterion] | None = None,
         *,
+        resolution: float | None = None,
         coplanarity: float | None = None,
         collinearity: float | None = None,
         tolerance: float | None = None,
@@ -173,6 +175,7 @@ class NuSpline(SpaceCurve):
         criteria: _Criterion | Iterable[_Criterion] | None = None,
         strategy: _Strategy = "fairest",
         step: float = 0.5,
+        resolution: float = 0.0,
         coplanarity: float = 0.2,
         collinearity: float = 0.2,
         tolerance: float = 1e-9,
@@ -205,6 +208,7 @@ class TensionSpline(SpaceCurve):
         criteria: _Criterion | Iterable[_Criterion] | None = None,
         strategy: _Strategy = "fairest",
         step: float | None = None,
+        resolution: float = 0.0,
         coplanarity: float = 0.2,
         collinearity: float = 0.2,
         tolerance: float = 1e-9,
@@ -246,6 +250,7 @@ class CatmullRom(SpaceCurve):
         criteria: _Criterion | Iterable[_Criterion] | None = None,
         safety: float = 0.9,
         continuity: _Continuity = "C1",
+        resolution: float = 0.0,
         coplanarity: float = 0.2,
         collinearity: float = 0.2,
         tolerance: float = 1e-9,
@@ -415,6 +420,7 @@ def _fit_many(
     shape_preserving: bool,
     threads: int | None,
     criteria: _Criterion | Iterable[_Criterion] | None,
+    resolution: float,
     coplanarity: float,
     collinearity: float,
     tolerance: float,
@@ -434,6 +440,7 @@ def _check_shape(
     closed: bool,
     repeated: str,
     criteria: _Criterion | Iterable[_Criterion] | None,
+    resolution: float | None,
     coplanarity: float | None,
     collinearity: float | None,
     tolerance: float | None,
@@ -451,6 +458,7 @@ def _polygon_shape(
     boundary: _Boundary | Tangents | None,
     closed: bool,
     repeated: str,
+    resolution: float,
     tolerance: float,
 ) -> dict[str, Any]: ...
 

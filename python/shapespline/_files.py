@@ -53,7 +53,7 @@ METHODS: dict[type, str] = {
 # Curves
 
 #: What a check is asked, and a shape-preserving fit before it.
-_OPTIONS = ("criteria", "coplanarity", "collinearity", "tolerance")
+_OPTIONS = ("criteria", "resolution", "coplanarity", "collinearity", "tolerance")
 
 
 @dataclass(frozen=True)

@@ -43,7 +43,7 @@ if TYPE_CHECKING:
 
 __all__ = ["METHODS", "located", "run"]
 
-_CHECK = ("criteria", "coplanarity", "collinearity", "tolerance")
+_CHECK = ("criteria", "resolution", "coplanarity", "collinearity", "tolerance")
 _CURVE = ("parameters", "boundary", "closed", "repeated", "start_tangent", "end_tangent", *_CHECK)
 _SEARCH = ("strategy", "step", "max_iterations")
 #: name → class, and the options that the method has.

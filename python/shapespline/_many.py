@@ -27,7 +27,13 @@ if TYPE_CHECKING:
 
 # What each option is where nobody says, and which methods have it. ``step`` has a default for
 # each strategy, which the compiled part knows.
-_SEARCH = {"criteria": None, "coplanarity": 0.2, "collinearity": 0.2, "tolerance": 1e-9}
+_SEARCH = {
+    "criteria": None,
+    "resolution": 0.0,
+    "coplanarity": 0.2,
+    "collinearity": 0.2,
+    "tolerance": 1e-9,
+}
 _TENSION_SEARCH = {**_SEARCH, "strategy": "fairest", "step": None, "max_iterations": None}
 _PRESERVING: dict[str, dict[str, Any]] = {
     "nu": _TENSION_SEARCH,
@@ -131,6 +137,7 @@ def fit_many(
     criteria: _Criterion | Iterable[_Criterion] | None = None,
     strategy: _Strategy | None = None,
     step: float | None = None,
+    resolution: float | None = None,
     coplanarity: float | None = None,
     collinearity: float | None = None,
     tolerance: float | None = None,
@@ -170,7 +177,7 @@ def fit_many(
         curves are fitted in either case.
     threads : int, optional
         Number of threads, at least 1; default one for each processor. Results do not depend on it.
-    criteria, coplanarity, collinearity, tolerance
+    criteria, resolution, coplanarity, collinearity, tolerance
         As for ``shape_preserving`` of the class.
     strategy, step, max_iterations
         As for ``NuSpline.shape_preserving`` and ``TensionSpline.shape_preserving``.
@@ -221,6 +228,7 @@ def fit_many(
         "criteria": criteria,
         "strategy": strategy,
         "step": step,
+        "resolution": resolution,
         "coplanarity": coplanarity,
         "collinearity": collinearity,
         "tolerance": tolerance,

@@ -171,6 +171,7 @@ def add_fit_options(parser: argparse.ArgumentParser, methods: Iterable[str]) -> 
         ("--safety", real, "catmull-rom: share of the bounds on its handles that is used"),
         ("--tension", real, "nu, catmull-rom: given tension, no search"),
         ("--tangent-scale", real, "tension: given λ in (0, 1], no search"),
+        ("--resolution", real, "accuracy of the points: no more is asked than they can know"),
         ("--coplanarity", real, "sine of the largest angle between binormal and plane normal"),
         ("--collinearity", real, "sine of the largest angle between tangent and line"),
         ("--tolerance", real, "what counts as zero"),

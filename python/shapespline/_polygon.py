@@ -134,6 +134,7 @@ def polygon_shape(
     boundary: _Boundary | Tangents | None = None,
     closed: bool = False,
     repeated: Literal["error", "drop"] = "error",
+    resolution: float = 0.0,
     tolerance: float = 1e-9,
 ) -> PolygonShape:
     """Return what points say about the shape of a curve through them.
@@ -154,6 +155,9 @@ def polygon_shape(
     repeated : {"error", "drop"}
         What becomes of points that equal the one before them, or are given its parameter: they are
         refused, or left out. Indices and arrays refer to the points as given in either case.
+    resolution : float
+        Accuracy of the points, in their units: what a move of the points by that much could
+        undo is not called for. Default 0.
     tolerance : float
         In [0, 1): points whose turning angle has a smaller sine count as collinear, and four whose
         unit chords span a smaller volume as coplanar.
@@ -187,6 +191,8 @@ def polygon_shape(
     >>> shape.torsion[1:3]
     array([1., 1.])
     """
-    parts = _core._polygon_shape(points, parameters, boundary, closed, repeated, tolerance)
+    parts = _core._polygon_shape(
+        points, parameters, boundary, closed, repeated, resolution, tolerance
+    )
     parts["calls"] = tuple(tuple(names) for names in parts["calls"])
     return PolygonShape(**parts)

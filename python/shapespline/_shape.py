@@ -40,6 +40,7 @@ def check_shape(
     closed: bool = False,
     repeated: Literal["error", "drop"] = "error",
     criteria: _Criterion | Iterable[_Criterion] | None = None,
+    resolution: float | None = None,
     coplanarity: float | None = None,
     collinearity: float | None = None,
     tolerance: float | None = None,
@@ -75,6 +76,9 @@ def check_shape(
         Any of ``"convexity"``, ``"inflection"``, ``"turning"``, ``"torsion"``, ``"coplanarity"``,
         ``"collinearity"``, ``"global-convexity"`` and ``"regular"``; default all but the last two.
         Whether the curve is regular, γ' ≠ 0, is asked in any case, and listed where it is not.
+    resolution : float, optional
+        Accuracy of the points, in their units: what a move of the points by that much could
+        undo is not asked for. Default 0.
     coplanarity, collinearity : float, optional
         ε₁ and ε₀ in (0, 1]: sine of the largest angle between binormal and plane normal where four
         points lie in a plane, and between tangent and line where three lie on a line. Default 0.2.
@@ -139,7 +143,11 @@ def check_shape(
     ours = isinstance(curve, SpaceCurve) and boundary is None
     if ours and _is_own(points, curve, parameters, closed):
         report: ShapeReport = curve.check(
-            criteria, coplanarity=coplanarity, collinearity=collinearity, tolerance=tolerance
+            criteria,
+            resolution=resolution,
+            coplanarity=coplanarity,
+            collinearity=collinearity,
+            tolerance=tolerance,
         )
         return report
     if isinstance(curve, TensionSpline):
@@ -156,6 +164,7 @@ def check_shape(
         closed,
         repeated,
         criteria,
+        resolution,
         coplanarity,
         collinearity,
         tolerance,
@@ -208,7 +217,7 @@ def _breaks(points: Floats, control: Floats, parameters: Any, closed: bool) -> F
         text = f"curve must have shape (segments, degree + 1, dim), got shape {shape}"
         raise InputError(text, "curve", value=shape)
     # By name, or checked as for a curve through the points.
-    shape_of_points = _core._polygon_shape(points, parameters, None, closed, "error", 0.0)
+    shape_of_points = _core._polygon_shape(points, parameters, None, closed, "error", 0.0, 0.0)
     u: Floats = shape_of_points["parameters"]
     if len(u) != shape[0] + 1:
         raise InputError(

@@ -92,7 +92,7 @@ def _add_fit(commands: argparse._SubParsersAction[Parser]) -> None:
 
 
 #: The options of a check.
-CHECKED = ("criteria", "coplanarity", "collinearity", "tolerance")
+CHECKED = ("criteria", "resolution", "coplanarity", "collinearity", "tolerance")
 
 
 def _located(
@@ -153,6 +153,7 @@ def _check(options: argparse.Namespace) -> int:
                     closed,
                     repeated,
                     asked["criteria"],
+                    asked["resolution"],
                     asked["coplanarity"],
                     asked["collinearity"],
                     asked["tolerance"],
@@ -209,6 +210,7 @@ def _add_check(commands: argparse._SubParsersAction[Parser]) -> None:
     )
     add_closing(parser, "as CURVE.json has it")
     for name, default, what in (
+        ("resolution", 0, "accuracy of the points, in their units"),
         ("coplanarity", 0.2, "sine of the largest angle between binormal and plane normal"),
         ("collinearity", 0.2, "sine of the largest angle between tangent and line"),
         ("tolerance", 1e-9, "what counts as zero, and as passing through a point"),

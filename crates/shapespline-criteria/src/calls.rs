@@ -7,7 +7,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 use shapespline_geometry::{Boundary, DataPolygon, Dimension, Stretch, length, normalize};
 
-use crate::{Criteria, Criterion, Tolerances};
+use crate::{Criteria, Criterion, Tolerances, resolution::leave_known};
 
 /// From two blocks of this many segments on all threads find the calls.
 const BLOCK: usize = 4096;
@@ -72,6 +72,13 @@ impl Calls {
     /// The polygon doubles back on itself at a node of the segment. Asks for nothing.
     const DOUBLING_BACK: Self = Self(1 << 19);
 
+    /// What a node asks for that a segment begins at, and one that it ends at.
+    pub(crate) const AT_START: Self = Self::LINE_AT_START.and(Self::TURNING_AT_START);
+    pub(crate) const AT_END: Self = Self::LINE_AT_END.and(Self::TURNING_AT_END);
+    /// What the two nodes of a segment ask for together.
+    pub(crate) const PAIR: Self =
+        Self::CONVEXITY.and(Self::INFLECTION).and(Self::GLOBAL_CONVEXITY).and(Self::TURNING_PAIR);
+
     /// Whether any call of `other` is among these.
     #[inline]
     #[must_use]
@@ -90,6 +97,12 @@ impl Calls {
     #[must_use]
     pub const fn and(self, other: Self) -> Self {
         Self(self.0 | other.0)
+    }
+
+    /// The calls that are not among `other`.
+    #[must_use]
+    pub(crate) const fn without(self, other: Self) -> Self {
+        Self(self.0 & !other.0)
     }
 
     /// Those of the calls that belong to a set of criteria.
@@ -219,6 +232,9 @@ impl Calls {
                 let around = around.map(|j| directions.get(j));
                 calls[j] = calls[j].and(of_zeros(polygon, i, around, calls[j], tolerances));
             }
+        }
+        if tolerances.resolution > 0.0 {
+            leave_known(polygon, stretch, tolerances.resolution, calls);
         }
         // Last: whether a plane is asked for depends on a turn, asked for or not.
         let (regular, excuse) = if wanted.any(Self::REGULAR) {

@@ -136,11 +136,13 @@ pub struct Tolerances {
     /// Sine below which points count as collinear (turning angle), coplanar (`Γ` of unit chords)
     /// and binormal vectors as perpendicular; in `[0, 1)`.
     pub zero: f64,
+    /// The accuracy of the points, a length: what a move of the points by that much could undo is not asked for.
+    pub resolution: f64,
 }
 
 impl Default for Tolerances {
     fn default() -> Self {
-        Self { coplanarity: 0.2, collinearity: 0.2, zero: 1e-9 }
+        Self { coplanarity: 0.2, collinearity: 0.2, zero: 1e-9, resolution: 0.0 }
     }
 }
 
@@ -160,6 +162,11 @@ impl Tolerances {
         if !(0.0..1.0).contains(&self.zero) {
             let (argument, value) = ("tolerance", self.zero);
             return Err(InputError::Scalar { argument, value, allowed: "in [0, 1)" });
+        }
+        if !(0.0..f64::INFINITY).contains(&self.resolution) {
+            let (argument, value) = ("resolution", self.resolution);
+            let allowed = "a length, at least 0";
+            return Err(InputError::Scalar { argument, value, allowed });
         }
         Ok(self)
     }

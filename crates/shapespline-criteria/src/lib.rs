@@ -42,6 +42,7 @@ mod notes;
 mod polygon_shape;
 mod regular;
 mod report;
+mod resolution;
 mod rounding;
 mod stretch;
 mod turning;

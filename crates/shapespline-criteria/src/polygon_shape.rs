@@ -4,7 +4,7 @@
 use glam::DVec3;
 use shapespline_geometry::{DataPolygon, length};
 
-use crate::{Calls, Criteria, Tolerances};
+use crate::{Calls, Criteria, Tolerances, resolution::is_straight};
 
 /// Whether a polygon lies on a line or in a plane.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -40,7 +40,7 @@ pub struct PolygonShape {
     /// Chords `L_i`, one a segment.
     pub chords: Vec<DVec3>,
     /// Unit vectors along the binormal vectors `P_i = L_{i−1} × L_i`, one a node; zero where the
-    /// polygon does not turn (and at ends with zero curvature).
+    /// polygon does not turn, or not clearly (and at ends with zero curvature).
     pub binormals: Vec<DVec3>,
     /// Turning angle at each node, in radians.
     pub turning_angles: Vec<f64>,
@@ -56,10 +56,16 @@ pub struct PolygonShape {
 pub fn polygon_shape(polygon: &DataPolygon, tolerances: &Tolerances) -> PolygonShape {
     let n = polygon.segments();
     let zero = tolerances.zero;
-    let binormals: Vec<DVec3> = (0..=n)
-        .map(|i| polygon.binormal(i))
-        .map(|p| if p.length() > zero { p.normalize() } else { DVec3::ZERO })
-        .collect();
+    let binormal = |i: usize| {
+        let p = polygon.binormal(i);
+        let inner = polygon.is_closed() || (i > 0 && i < n);
+        let straight = || {
+            let chords = [(i + n - 1) % n, i % n].map(|i| polygon.chord(i));
+            inner && is_straight(chords[0], chords[1], tolerances.resolution)
+        };
+        if p.length() > zero && !straight() { p.normalize() } else { DVec3::ZERO }
+    };
+    let binormals: Vec<DVec3> = (0..=n).map(binormal).collect();
     let torsion = |i: usize| {
         let known = binormals[i] != DVec3::ZERO && binormals[i + 1] != DVec3::ZERO;
         if known { polygon.discrete_torsion(i) } else { f64::NAN }

@@ -36,12 +36,13 @@ impl Asked {
 
     /// The same but for what is given.
     pub(crate) fn with(self, given: Given) -> PyResult<Self> {
-        let Given { criteria, coplanarity, collinearity, tolerance } = given;
-        let Tolerances { coplanarity: plane, collinearity: line, zero } = self.tolerances;
+        let Given { criteria, resolution, coplanarity, collinearity, tolerance } = given;
+        let own = self.tolerances;
         let tolerances = tolerances(
-            coplanarity.unwrap_or(plane),
-            collinearity.unwrap_or(line),
-            tolerance.unwrap_or(zero),
+            resolution.unwrap_or(own.resolution),
+            coplanarity.unwrap_or(own.coplanarity),
+            collinearity.unwrap_or(own.collinearity),
+            tolerance.unwrap_or(own.zero),
         )?;
         Ok(Self { criteria: criteria.or(self.criteria), tolerances, ..self })
     }
@@ -55,6 +56,7 @@ impl Asked {
 /// The options of a check that a caller gave.
 pub(crate) struct Given {
     pub(crate) criteria: CriteriaNames,
+    pub(crate) resolution: Option<f64>,
     pub(crate) coplanarity: Option<f64>,
     pub(crate) collinearity: Option<f64>,
     pub(crate) tolerance: Option<f64>,

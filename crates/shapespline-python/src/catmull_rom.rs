@@ -132,6 +132,9 @@ impl CatmullRom {
     /// continuity : {"C1", "G1"}
     ///     ``"C1"`` takes the smaller of the two scales at a point for both handles, ``"G1"`` lets each
     ///     segment have its own.
+    /// resolution : float
+    ///     Accuracy of the points, in their units: what a move of the points by that much could undo is not
+    ///     asked for. Default 0.
     /// coplanarity, collinearity, tolerance : float
     ///     As for the method ``check``.
     ///
@@ -176,11 +179,12 @@ impl CatmullRom {
             criteria=CriteriaNames::DEFAULT,
             safety=0.9,
             continuity=Continuity::C1,
+            resolution=0.0,
             coplanarity=0.2,
             collinearity=0.2,
             tolerance=1e-9,
         ),
-        text_signature = "($type, points, parameters='centripetal', *, boundary='natural', closed=False, repeated='error', criteria=None, safety=0.9, continuity='C1', coplanarity=0.2, \
+        text_signature = "($type, points, parameters='centripetal', *, boundary='natural', closed=False, repeated='error', criteria=None, safety=0.9, continuity='C1', resolution=0.0, coplanarity=0.2, \
                           collinearity=0.2, tolerance=1e-9)"
     )]
     // One argument a keyword: this is the signature that users see.
@@ -195,13 +199,16 @@ impl CatmullRom {
         criteria: CriteriaNames,
         #[pyo3(from_py_with = options::safety)] safety: f64,
         #[pyo3(from_py_with = options::continuity)] continuity: Continuity,
+        #[pyo3(from_py_with = options::resolution)] resolution: f64,
         #[pyo3(from_py_with = options::coplanarity)] coplanarity: f64,
         #[pyo3(from_py_with = options::collinearity)] collinearity: f64,
         #[pyo3(from_py_with = options::tolerance)] tolerance: f64,
     ) -> PyResult<Py<PyAny>> {
         let input = CurveInput::new(points, parameters, boundary, closed, repeated)?;
-        let (criteria, tolerances) =
-            (criteria.or(Criteria::OF_FITS), tolerances(coplanarity, collinearity, tolerance)?);
+        let (criteria, tolerances) = (
+            criteria.or(Criteria::OF_FITS),
+            tolerances(resolution, coplanarity, collinearity, tolerance)?,
+        );
         let options = HandleOptions { criteria, tolerances, safety, continuity };
         preserve(class.py(), input, &Request::of_handles(criteria, tolerances), |polygon, go_on| {
             catmull_rom::CatmullRom::shape_preserving_with(polygon, &options, &mut |_| go_on())

@@ -62,12 +62,13 @@ pub(crate) struct Searching {
 impl Searching {
     pub(crate) fn options(
         self,
+        resolution: f64,
         coplanarity: f64,
         collinearity: f64,
         tolerance: f64,
     ) -> PyResult<SearchOptions> {
         let Self { criteria, strategy, step, max_iterations } = self;
-        let tolerances = tolerances(coplanarity, collinearity, tolerance)?;
+        let tolerances = tolerances(resolution, coplanarity, collinearity, tolerance)?;
         Ok(SearchOptions {
             criteria: criteria.or(Criteria::OF_FITS),
             tolerances,

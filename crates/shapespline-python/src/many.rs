@@ -109,6 +109,7 @@ pub(crate) fn _fit_many<'py>(
     shape_preserving: bool,
     #[pyo3(from_py_with = options::threads)] threads: Option<usize>,
     criteria: CriteriaNames,
+    #[pyo3(from_py_with = options::resolution)] resolution: f64,
     #[pyo3(from_py_with = options::coplanarity)] coplanarity: f64,
     #[pyo3(from_py_with = options::collinearity)] collinearity: f64,
     #[pyo3(from_py_with = options::tolerance)] tolerance: f64,
@@ -125,6 +126,7 @@ pub(crate) fn _fit_many<'py>(
     let rows = Rows { points, offsets, parametrization, boundary, closed, repeated, threads };
     let step = step.unwrap_or_else(|| method.default_step(strategy));
     let search = Searching { criteria, strategy, step, max_iterations }.options(
+        resolution,
         coplanarity,
         collinearity,
         tolerance,

@@ -128,6 +128,9 @@ impl NuSpline {
     ///     ``step``.
     /// step : float
     ///     What ``"nussp"`` adds, and what doubling starts from; positive.
+    /// resolution : float
+    ///     Accuracy of the points, in their units: what a move of the points by that much could undo is not
+    ///     asked for. Default 0.
     /// coplanarity, collinearity, tolerance : float
     ///     As for the method ``check``.
     /// max_iterations : int, optional
@@ -178,12 +181,13 @@ impl NuSpline {
             criteria=CriteriaNames::DEFAULT,
             strategy=Strategy::Fairest,
             step=0.5,
+            resolution=0.0,
             coplanarity=0.2,
             collinearity=0.2,
             tolerance=1e-9,
             max_iterations=None,
         ),
-        text_signature = "($type, points, parameters='chordal', *, boundary='zero-curvature', closed=False, repeated='error', criteria=None, strategy='fairest', step=0.5, coplanarity=0.2, \
+        text_signature = "($type, points, parameters='chordal', *, boundary='zero-curvature', closed=False, repeated='error', criteria=None, strategy='fairest', step=0.5, resolution=0.0, coplanarity=0.2, \
                           collinearity=0.2, tolerance=1e-9, max_iterations=None)"
     )]
     // One argument a keyword: this is the signature that users see.
@@ -198,6 +202,7 @@ impl NuSpline {
         criteria: CriteriaNames,
         #[pyo3(from_py_with = options::strategy)] strategy: Strategy,
         #[pyo3(from_py_with = options::step)] step: f64,
+        #[pyo3(from_py_with = options::resolution)] resolution: f64,
         #[pyo3(from_py_with = options::coplanarity)] coplanarity: f64,
         #[pyo3(from_py_with = options::collinearity)] collinearity: f64,
         #[pyo3(from_py_with = options::tolerance)] tolerance: f64,
@@ -205,6 +210,7 @@ impl NuSpline {
     ) -> PyResult<Py<PyAny>> {
         let input = CurveInput::new(points, parameters, boundary, closed, repeated)?;
         let search = Searching { criteria, strategy, step, max_iterations }.options(
+            resolution,
             coplanarity,
             collinearity,
             tolerance,

@@ -139,6 +139,12 @@ pub(crate) fn tangent_scale(object: &Bound<'_, PyAny>) -> PyResult<f64> {
 pub(crate) fn safety(object: &Bound<'_, PyAny>) -> PyResult<f64> {
     float("safety", object)
 }
+pub(crate) fn resolution(object: &Bound<'_, PyAny>) -> PyResult<f64> {
+    float("resolution", object)
+}
+pub(crate) fn optional_resolution(object: &Bound<'_, PyAny>) -> PyResult<Option<f64>> {
+    if object.is_none() { Ok(None) } else { resolution(object).map(Some) }
+}
 pub(crate) fn coplanarity(object: &Bound<'_, PyAny>) -> PyResult<f64> {
     float("coplanarity", object)
 }
@@ -360,6 +366,11 @@ impl<'py> FromPyObject<'_, 'py> for CriteriaNames {
 }
 
 /// The three tolerances, checked.
-pub(crate) fn tolerances(coplanarity: f64, collinearity: f64, zero: f64) -> PyResult<Tolerances> {
-    Tolerances { coplanarity, collinearity, zero }.validate().map_err(input_error)
+pub(crate) fn tolerances(
+    resolution: f64,
+    coplanarity: f64,
+    collinearity: f64,
+    zero: f64,
+) -> PyResult<Tolerances> {
+    Tolerances { coplanarity, collinearity, zero, resolution }.validate().map_err(input_error)
 }

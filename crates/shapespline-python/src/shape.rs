@@ -42,12 +42,13 @@ pub(crate) fn _check_shape(
     #[pyo3(from_py_with = options::closed)] closed: bool,
     #[pyo3(from_py_with = options::repeated)] repeated: Repeated,
     criteria: CriteriaNames,
+    #[pyo3(from_py_with = options::optional_resolution)] resolution: Option<f64>,
     #[pyo3(from_py_with = options::optional_coplanarity)] coplanarity: Option<f64>,
     #[pyo3(from_py_with = options::optional_collinearity)] collinearity: Option<f64>,
     #[pyo3(from_py_with = options::optional_tolerance)] tolerance: Option<f64>,
     of_fit: bool,
 ) -> PyResult<ShapeReport> {
-    let asked = Given { criteria, coplanarity, collinearity, tolerance };
+    let asked = Given { criteria, resolution, coplanarity, collinearity, tolerance };
     let asked = Asked::default_of(of_fit).with(asked)?;
     let curve = Arc::clone(&curve.get().curve);
     let Points { points, dimension } = points;
@@ -215,6 +216,7 @@ fn finished(py: Python<'_>, count: Option<InflectionCount>) -> PyResult<Counted<
 
 /// The discrete shape of points, by the names of its parts.
 #[pyfunction]
+#[allow(clippy::too_many_arguments)]
 pub(crate) fn _polygon_shape<'py>(
     py: Python<'py>,
     points: Points,
@@ -222,11 +224,12 @@ pub(crate) fn _polygon_shape<'py>(
     boundary: Option<Ends>,
     #[pyo3(from_py_with = options::closed)] closed: bool,
     #[pyo3(from_py_with = options::repeated)] repeated: Repeated,
+    #[pyo3(from_py_with = options::resolution)] resolution: f64,
     #[pyo3(from_py_with = options::tolerance)] tolerance: f64,
 ) -> PyResult<Bound<'py, PyDict>> {
     let CurveInput(input) =
         CurveInput::new(points, parameters, boundary.unwrap_or(Ends::Default), closed, repeated)?;
-    let tolerances = Tolerances { zero: tolerance, ..Tolerances::default() };
+    let tolerances = Tolerances { zero: tolerance, resolution, ..Tolerances::default() };
     let tolerances = tolerances.validate().map_err(input_error)?;
     let dimension = input.dimension;
     let made = detached(py, input.points.len(), || {

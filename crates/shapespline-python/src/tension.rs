@@ -225,6 +225,9 @@ impl TensionSpline {
     /// step : float, optional
     ///     ρ in (0, 1) of ``"reduction"``, default 0.5; else what doubling starts from or what is added
     ///     to 1/λ − 1, default 0.25.
+    /// resolution : float
+    ///     Accuracy of the points, in their units: what a move of the points by that much could undo is not
+    ///     asked for. Default 0.
     /// coplanarity, collinearity, tolerance : float
     ///     As for the method ``check``.
     /// max_iterations : int, optional
@@ -275,12 +278,13 @@ impl TensionSpline {
             criteria=CriteriaNames::DEFAULT,
             strategy=Strategy::Fairest,
             step=None,
+            resolution=0.0,
             coplanarity=0.2,
             collinearity=0.2,
             tolerance=1e-9,
             max_iterations=None,
         ),
-        text_signature = "($type, points, parameters='chordal', *, boundary='natural', closed=False, repeated='error', criteria=None, strategy='fairest', step=None, coplanarity=0.2, \
+        text_signature = "($type, points, parameters='chordal', *, boundary='natural', closed=False, repeated='error', criteria=None, strategy='fairest', step=None, resolution=0.0, coplanarity=0.2, \
                           collinearity=0.2, tolerance=1e-9, max_iterations=None)"
     )]
     // One argument a keyword: this is the signature that users see.
@@ -295,6 +299,7 @@ impl TensionSpline {
         criteria: CriteriaNames,
         #[pyo3(from_py_with = options::strategy)] strategy: Strategy,
         #[pyo3(from_py_with = options::optional_step)] step: Option<f64>,
+        #[pyo3(from_py_with = options::resolution)] resolution: f64,
         #[pyo3(from_py_with = options::coplanarity)] coplanarity: f64,
         #[pyo3(from_py_with = options::collinearity)] collinearity: f64,
         #[pyo3(from_py_with = options::tolerance)] tolerance: f64,
@@ -303,6 +308,7 @@ impl TensionSpline {
         let input = CurveInput::new(points, parameters, boundary, closed, repeated)?;
         let step = step.unwrap_or_else(|| Method::Tension.default_step(strategy));
         let search = Searching { criteria, strategy, step, max_iterations }.options(
+            resolution,
             coplanarity,
             collinearity,
             tolerance,

@@ -171,6 +171,7 @@ impl SpaceCurve {
         let names: Vec<_> = criteria.iter().map(Criterion::name).collect();
         let options = PyDict::new(py);
         options.set_item("criteria", names)?;
+        options.set_item("resolution", tolerances.resolution)?;
         options.set_item("coplanarity", tolerances.coplanarity)?;
         options.set_item("collinearity", tolerances.collinearity)?;
         options.set_item("tolerance", tolerances.zero)?;
@@ -197,6 +198,9 @@ impl SpaceCurve {
     ///     ``"collinearity"``, ``"global-convexity"`` and ``"regular"``. Default of a shape-preserving
     ///     curve: those it was fitted with; else all but the last two. Whether the curve is regular,
     ///     γ' ≠ 0, is asked in any case, and listed where it is not.
+    /// resolution : float, optional
+    ///     Accuracy of the points, in their units: what a move of the points by that much could undo is not
+    ///     asked for. Default: that of the fit, else 0.
     /// coplanarity, collinearity : float, optional
     ///     ε₁ and ε₀ in (0, 1]: sine of the largest angle between binormal and plane normal where four
     ///     points lie in a plane, and between tangent and line where three lie on a line. Default:
@@ -234,21 +238,23 @@ impl SpaceCurve {
     /// True
     #[pyo3(
         signature = (
-            criteria=CriteriaNames::DEFAULT, *, coplanarity=None, collinearity=None, tolerance=None
+            criteria=CriteriaNames::DEFAULT, *, resolution=None, coplanarity=None, collinearity=None, tolerance=None
         ),
-        text_signature = "($self, criteria=None, *, coplanarity=None, collinearity=None, \
+        text_signature = "($self, criteria=None, *, resolution=None, coplanarity=None, collinearity=None, \
                           tolerance=None)"
     )]
     fn check(
         &self,
         py: Python<'_>,
         criteria: CriteriaNames,
+        #[pyo3(from_py_with = options::optional_resolution)] resolution: Option<f64>,
         #[pyo3(from_py_with = options::optional_coplanarity)] coplanarity: Option<f64>,
         #[pyo3(from_py_with = options::optional_collinearity)] collinearity: Option<f64>,
         #[pyo3(from_py_with = options::optional_tolerance)] tolerance: Option<f64>,
     ) -> PyResult<ShapeReport> {
         let asked = self.search.as_ref().map_or_else(Asked::default, |search| search.asked);
-        let asked = asked.with(Given { criteria, coplanarity, collinearity, tolerance })?;
+        let asked =
+            asked.with(Given { criteria, resolution, coplanarity, collinearity, tolerance })?;
         ShapeReport::make(py, Subject::Own(self.curve.clone()), asked)
     }
 }

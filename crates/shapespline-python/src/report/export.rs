@@ -30,7 +30,7 @@ impl ShapeReport {
     /// -------
     /// dict
     ///     ``ok``, ``margin``, ``counts`` (criterion to ``violated`` and ``applicable``),
-    ///     ``coplanarity``, ``collinearity``, ``tolerance``, and the lists ``segments``, ``violations``
+    ///     ``resolution``, ``coplanarity``, ``collinearity``, ``tolerance``, and the lists ``segments``, ``violations``
     ///     (records) and ``undecided`` (``segment``, ``criterion``, ``interval``). A margin or location
     ///     that does not exist is ``None``.
     ///
@@ -70,6 +70,7 @@ impl ShapeReport {
         dict.set_item("ok", self.report.ok())?;
         dict.set_item("margin", margin.is_finite().then_some(margin))?;
         dict.set_item("counts", counts)?;
+        dict.set_item("resolution", self.asked.tolerances.resolution)?;
         dict.set_item("coplanarity", self.asked.tolerances.coplanarity)?;
         dict.set_item("collinearity", self.asked.tolerances.collinearity)?;
         dict.set_item("tolerance", self.asked.tolerances.zero)?;

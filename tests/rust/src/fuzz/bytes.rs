@@ -236,11 +236,13 @@ impl<'a> Bytes<'a> {
                 coplanarity: self.fraction(),
                 collinearity: self.fraction(),
                 zero: 10f64.powi(-(self.below(20) as i32)),
+                resolution: 10f64.powi(self.below(40) as i32 - 30),
             },
             1 => Tolerances {
                 coplanarity: self.unscaled(),
                 collinearity: self.unscaled(),
                 zero: self.unscaled(),
+                resolution: self.unscaled(),
             },
             _ => Tolerances::default(),
         }
