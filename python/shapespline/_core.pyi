@@ -536,6 +536,7 @@ class MonotoneQuintic(MonotoneSpline):
         *,
         slopes: Literal["optimal", "fritsch-butland"] | ArrayLike = "optimal",
         fairness: Literal["bending", "parametric"] = "bending",
+        clip: bool = False,
         extrapolate: _Extrapolate = "linear",
     ) -> MonotoneQuintic: ...
     @property
@@ -552,6 +553,7 @@ class MonotoneDiagnostics:
         converged: bool,
         certified: bool,
         energy: float,
+        limited: list[int],
     ) -> Self: ...
     @property
     def solver(self) -> str: ...
@@ -567,6 +569,8 @@ class MonotoneDiagnostics:
     def certified(self) -> bool: ...
     @property
     def energy(self) -> float: ...
+    @property
+    def limited(self) -> list[int]: ...
     def __eq__(self, other: object, /) -> bool: ...
     def __ne__(self, other: object, /) -> bool: ...
     __hash__: None  # type: ignore[assignment]
@@ -626,6 +630,7 @@ def fit_many_monotone(
     offsets: ArrayLike | None = None,
     slopes: Literal["optimal", "fritsch-butland"] | ArrayLike | None = None,
     fairness: Literal["bending", "parametric"] | None = None,
+    clip: bool = False,
     shape: float | tuple[ArrayLike, ArrayLike] | None = None,
     extrapolate: _Extrapolate = "linear",
 ) -> MonotoneRows: ...

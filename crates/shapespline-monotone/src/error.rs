@@ -62,6 +62,16 @@ pub enum MonotoneError {
         /// Its value.
         value: f64,
     },
+    /// A given slope that no C² monotone quintic has.
+    #[error("slopes[{index}] {rule}, got {value}; clip=True limits such slopes")]
+    Slope {
+        /// The entry.
+        index: usize,
+        /// Its value.
+        value: f64,
+        /// What it breaks: "must be 0 at a turn of the data" and so on.
+        rule: &'static str,
+    },
     /// A shape parameter that is negative, not a number, or so large that its product with a slope overflows.
     #[error("{argument}[{index}] = {value}; shape parameters must lie in [0, 1e300]")]
     Shape {

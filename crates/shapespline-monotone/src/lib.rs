@@ -41,6 +41,7 @@ mod energy;
 mod error;
 mod evaluate;
 mod extrapolation;
+mod given;
 mod integrals;
 mod interrupt;
 mod inverse;
@@ -56,6 +57,7 @@ mod quintic;
 mod record;
 #[cfg(test)]
 mod reference;
+mod region;
 mod roots;
 #[cfg(feature = "nlopt")]
 pub mod second_opinion;

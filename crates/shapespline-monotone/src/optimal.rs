@@ -149,11 +149,10 @@ pub(crate) fn coefficients(h: f64, delta: f64, v0: [f64; 2], v1: [f64; 2]) -> [f
 pub(crate) fn unconstrained(
     data: &Data,
     fairness: Fairness,
-    prescribed: Option<Prescribed<'_>>,
+    fixed: &dyn Fn(usize) -> Fixed,
     count: usize,
 ) -> Option<Optimum> {
     let mut system = NodeSystem::with_capacity(data.len() + 1);
-    let fixed = |i| prescribed.map_or_else(|| fixed_by_data(&data.delta, i), |p| p.fixed[i]);
     let v = natural(&mut system, data, fairness, largest(data, fairness), fixed);
     is_monotone(v, data, fixed, count).then(|| result(v, data))
 }
@@ -193,6 +192,10 @@ fn run(
     problem.minimise_unconstrained(data, fairness);
     if is_monotone(&problem.v, data, |i| problem.fixed[i], data.len()) {
         return result(&problem.v, data);
+    }
+    if problem.fixed.iter().flatten().all(|f| !f.is_nan()) {
+        // Nothing is free: rounding alone can have hidden that this is monotone.
+        return result(&problem.inside, data);
     }
     let mut found = Found { gap: f64::INFINITY, ..Found::default() };
     found.add(problem, data);

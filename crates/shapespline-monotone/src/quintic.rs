@@ -4,8 +4,9 @@ use crate::MonotoneError;
 use crate::data::{Data, check_finite, parts};
 use crate::energy::{self, Fairness, is_flat};
 use crate::extrapolation::Extrapolation;
+use crate::given;
 use crate::interrupt::{GoOn, ask};
-use crate::optimal::coefficients;
+use crate::optimal::{self, Optimum, coefficients};
 use crate::program::admissible_slopes;
 use crate::quartic_form::certified_nonnegative;
 use crate::slopes;
@@ -21,7 +22,8 @@ pub enum Slopes {
     /// Fritsch and Butland's harmonic means and the paper's end formula.
     #[default]
     FritschButland,
-    /// These, limited to the region `0 ≤ d ≤ 2Δ` in which the constructions are monotone.
+    /// These. The quartic limits them to the region `0 ≤ d ≤ 2Δ` in which its construction is monotone. The quintic takes
+    /// all that a C² monotone quintic can have, and refuses others or limits them ([`QuinticOptions::clip`]).
     Given(Vec<f64>),
     /// Chosen together with the second derivatives: the least energy over all C² monotone quintics.
     Optimal,
@@ -34,6 +36,8 @@ pub struct QuinticOptions {
     pub slopes: Slopes,
     /// What is minimised.
     pub fairness: Fairness,
+    /// Limit given slopes that no C² monotone quintic has, instead of refusing them.
+    pub clip: bool,
     /// What it is outside the data.
     pub extrapolate: Extrapolation,
 }
@@ -43,6 +47,7 @@ impl Default for QuinticOptions {
         Self {
             slopes: Slopes::Optimal,
             fairness: Fairness::Bending,
+            clip: false,
             extrapolate: Extrapolation::default(),
         }
     }
@@ -52,9 +57,9 @@ impl Default for QuinticOptions {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Solver {
-    /// The primal–dual active set on the tridiagonal box program (slopes given).
+    /// The primal–dual active set on the paper's tridiagonal box program (slopes of Fritsch and Butland).
     ActiveSet,
-    /// The interior-point iteration on slopes and second derivatives.
+    /// The interior-point iteration on the exact cone of monotone quintics (optimal and given slopes).
     InteriorPoint,
 }
 
@@ -78,16 +83,20 @@ pub struct Diagnostics {
     pub certified: bool,
     /// The minimised energy, in the data's units (+∞ if it overflows).
     pub energy: f64,
+    /// Nodes whose given slopes were limited.
+    pub limited: Vec<usize>,
 }
 
 /// The C² monotone quintic Bézier-like spline (paper 003, equation (16)).
 ///
-/// With given slopes: the optimum of the paper's program — continuity (17), monotonicity (22), (23), α, β ≥ 0,
-/// energy (20) — as a strictly convex box program in the nodal second derivatives, O(N). With optimal slopes (the
-/// default): the least energy over C² monotone quintics on the data's knots, to half a per cent; what a segment adds to
-/// the distance is held against its own energy, so that small segments are at their optimum too, and the result does not
-/// jump as the data move. Data that are not monotone are fitted piecewise: flat at turns and flats, C² and monotone on
-/// every interval where the data are.
+/// With slopes of Fritsch and Butland: the optimum of the paper's program — continuity (17), monotonicity (22), (23),
+/// α, β ≥ 0, energy (20) — as a strictly convex box program in the nodal second derivatives, O(N). α, β ≥ 0 is more
+/// than monotonicity asks; it makes second derivatives about three times too large on smooth data. With given slopes:
+/// the least energy over all second derivatives that are monotone, O(N). With optimal slopes (the default): the least
+/// energy over C² monotone quintics on the data's knots. Both to half a per cent; what a segment adds to the distance
+/// is held against its own energy, so that small segments are at their optimum too, and the result does not jump as
+/// the data move. Data that are not monotone are fitted piecewise: flat at turns and flats, C² and monotone on every
+/// interval where the data are.
 #[derive(Debug, Clone)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct MonotoneQuintic {
@@ -131,7 +140,7 @@ impl MonotoneQuintic {
         let fairness = options.fairness;
         let (d, s, mut diagnostics) = match &options.slopes {
             Slopes::FritschButland => {
-                with_fixed_slopes(&data, slopes::fritsch_butland(&data), fairness, go_on)?
+                paper(&data, slopes::fritsch_butland(&data), fairness, go_on)?
             }
             Slopes::Given(given) => {
                 if given.len() != x.len() {
@@ -142,7 +151,7 @@ impl MonotoneQuintic {
                     });
                 }
                 check_finite("slopes", given)?;
-                with_fixed_slopes(&data, slopes::limited(&data, given), fairness, go_on)?
+                with_given_slopes(&data, given, options, go_on)?
             }
             Slopes::Optimal => with_optimal_slopes(&data, fairness, go_on)?,
         };
@@ -225,7 +234,7 @@ impl MonotoneQuintic {
 type Fit = (Vec<f64>, Vec<f64>, Diagnostics);
 
 /// The paper's program for given slopes.
-fn with_fixed_slopes(
+fn paper(
     data: &Data,
     mut d: Vec<f64>,
     fairness: Fairness,
@@ -242,6 +251,7 @@ fn with_fixed_slopes(
         converged: solution.solved,
         certified: certified(data, &d, &solution.x),
         energy: 0.0,
+        limited: Vec::new(),
     };
     Ok((d, solution.x, diagnostics))
 }
@@ -259,16 +269,42 @@ fn with_optimal_slopes(
     let certified = certified(data, &best.d, &best.s);
     if !(best.converged && certified) {
         let energy = energy::total(data, fairness, &best.d, &best.s);
-        let (d, s, paper) =
-            with_fixed_slopes(data, slopes::fritsch_butland(data), fairness, go_on)?;
+        let (d, s, diagnostics) = paper(data, slopes::fritsch_butland(data), fairness, go_on)?;
         let other = energy::total(data, fairness, &d, &s);
         if !(certified && energy <= other) {
             // How far that is from the optimum: the bound is the iteration's.
             let gap = best.gap - (1.0 - other / energy);
             let kkt_residual = if gap >= 0.0 { gap } else { f64::INFINITY };
-            return Ok((d, s, Diagnostics { kkt_residual, converged: false, ..paper }));
+            return Ok((d, s, Diagnostics { kkt_residual, converged: false, ..diagnostics }));
         }
     }
+    Ok(fit(best, certified))
+}
+
+/// Given slopes; second derivatives of least energy over all with which the quintic is monotone.
+fn with_given_slopes(
+    data: &Data,
+    given: &[f64],
+    options: &QuinticOptions,
+    go_on: GoOn<'_>,
+) -> Result<Fit, MonotoneError> {
+    let fairness = options.fairness;
+    let fixed = given::fixed(data, &data.slopes_in(given));
+    let smooth = |fixed: &Vec<_>| optimal::unconstrained(data, fairness, &|i| fixed[i], data.len());
+    if let Some(best) = fixed.as_ref().and_then(smooth) {
+        let certified = certified(data, &best.d, &best.s);
+        return Ok(fit(best, certified));
+    }
+    let possible = given::possible(data, given, options.clip, go_on)?;
+    let Some(best) = windows::optimise(data, fairness, Some(possible.prescribed()), go_on) else {
+        return Err(MonotoneError::Interrupted);
+    };
+    let certified = certified(data, &best.d, &best.s);
+    let (d, s, diagnostics) = fit(best, certified);
+    Ok((d, s, Diagnostics { limited: possible.limited, ..diagnostics }))
+}
+
+fn fit(best: Optimum, certified: bool) -> Fit {
     let diagnostics = Diagnostics {
         solver: Solver::InteriorPoint,
         iterations: best.steps,
@@ -277,8 +313,9 @@ fn with_optimal_slopes(
         converged: best.converged,
         certified,
         energy: 0.0,
+        limited: Vec::new(),
     };
-    Ok((best.d, best.s, diagnostics))
+    (best.d, best.s, diagnostics)
 }
 
 /// Whether every segment's derivative is non-negative in its direction, by its Bernstein coefficients; a rounding

@@ -10,7 +10,7 @@
 use crate::data::Data;
 use crate::energy::{Fairness, is_flat};
 use crate::interrupt::GoOn;
-use crate::optimal::{self, Optimum, Prescribed, coefficients};
+use crate::optimal::{self, Optimum, Prescribed, coefficients, fixed_by_data};
 use crate::quartic_form::certified_nonnegative;
 use rayon::prelude::*;
 use std::ops::Range;
@@ -53,11 +53,15 @@ pub(crate) fn optimise(
     // A segment where the energy's own minimiser falls settles it for all, and what is beyond sixteen nodes hardly
     // matters there: most long data need no elimination of their whole length.
     let of = |segments: &Range<usize>| prescribed.map(|p| p.part(segments));
-    let probe = 0..PROBE.min(n);
-    let rises =
-        |_| optimal::unconstrained(&part(data, probe.clone()), fairness, of(&probe), PROBE - 16);
-    if (n <= PROBE || rises(()).is_some())
-        && let Some(done) = optimal::unconstrained(data, fairness, prescribed, n)
+    let fixed = |i: usize| prescribed.map_or_else(|| fixed_by_data(&data.delta, i), |p| p.fixed[i]);
+    let smooth = |segments: Range<usize>, count: usize| {
+        // At the end of the part the node is as the part alone would have it.
+        let data = part(data, segments);
+        let fixed = |i| prescribed.map_or_else(|| fixed_by_data(&data.delta, i), |p| p.fixed[i]);
+        optimal::unconstrained(&data, fairness, &fixed, count)
+    };
+    if (n <= PROBE || smooth(0..PROBE, PROBE - 16).is_some())
+        && let Some(done) = optimal::unconstrained(data, fairness, &fixed, n)
     {
         return Some(done);
     }

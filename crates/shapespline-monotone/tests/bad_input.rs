@@ -60,17 +60,34 @@ fn options() {
     assert_eq!("parametric".parse::<Fairness>().unwrap(), Fairness::Parametric);
 }
 
-/// Slopes outside the admissible region are limited to it, and reported as used.
+/// Slopes that no C² monotone quintic has are refused by name, or limited and reported.
 #[test]
-fn given_slopes_are_limited() {
-    let (x, y) = ([0.0, 1.0, 2.0], [0.0, 1.0, 3.0]);
-    let options = QuinticOptions {
-        slopes: Slopes::Given(vec![-1.0, 50.0, 1.0]),
-        ..QuinticOptions::default()
+fn impossible_slopes_are_refused_or_limited() {
+    let (x, y) = ([0.0, 1.0, 2.0, 3.0], [0.0, 1.0, 3.0, 3.0]);
+    let fit = |slopes: &[f64], clip| {
+        let options =
+            QuinticOptions { slopes: Slopes::Given(slopes.to_vec()), clip, ..Default::default() };
+        MonotoneQuintic::new(&x, &y, &options)
     };
-    let f = MonotoneQuintic::new(&x, &y, &options).unwrap();
-    assert_eq!(f.slopes()[0], 0.0);
-    assert!(f.slopes()[1] <= 2.0);
-    assert_eq!(f.slopes()[2], 1.0);
-    assert!(f.diagnostics().certified);
+    for (slopes, index, rule) in [
+        ([-1.0, 1.0, 0.0, 0.0], 0, "sign"),
+        ([1.0, 50.0, 0.0, 0.0], 1, "leave room"),
+        ([1.0, 1.0, 0.5, 0.0], 2, "flat"),
+        ([1.0, 1.0, 0.0, 1.0], 3, "flat"),
+    ] {
+        let error = fit(&slopes, false).unwrap_err();
+        assert!(
+            matches!(error, MonotoneError::Slope { index: i, value, .. } if i == index && value == slopes[index])
+        );
+        assert!(
+            error.to_string().contains(rule) && error.to_string().contains("clip=True"),
+            "{error}"
+        );
+        let f = fit(&slopes, true).unwrap();
+        let d = f.diagnostics();
+        assert!(d.certified && d.converged && d.limited.contains(&index), "{d:?}");
+        for (i, (ours, given)) in f.slopes().iter().zip(slopes).enumerate() {
+            assert_eq!(*ours != given, d.limited.contains(&i), "{i}");
+        }
+    }
 }

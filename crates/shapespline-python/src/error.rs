@@ -237,6 +237,7 @@ impl From<&MonotoneError> for Refused {
             | MonotoneError::Shape { argument, index, value } => {
                 Self::new(argument, [index], value)
             }
+            MonotoneError::Slope { index, value, .. } => Self::new("slopes", [index], value),
             MonotoneError::NotIncreasing { index, value, .. } => Self::new("x", [index], value),
             MonotoneError::TooFew { argument, found, .. }
             | MonotoneError::Length { argument, found, .. } => Self::new(argument, [], found),

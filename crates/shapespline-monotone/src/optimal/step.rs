@@ -252,10 +252,11 @@ impl Problem {
     pub(super) fn feasible(&mut self, data: &Data) -> f64 {
         let mut share = 0.0;
         for i in 0..self.n {
-            let (h, delta) = (data.h[i], data.delta[i]);
-            if is_flat(delta) {
+            // Where nothing is free nothing can be moved.
+            if self.given[i / W].idle[i % W] != 0.0 {
                 continue;
             }
+            let (h, delta) = (data.h[i], data.delta[i]);
             let at =
                 |share: f64| coefficients(h, delta, self.mix(i, share), self.mix(i + 1, share));
             let mut margin = 1e-15;

@@ -10,8 +10,8 @@ use crate::pickle::{self, Kind, Reduced};
 /// Attributes
 /// ----------
 /// solver : str
-///     ``"active-set"`` (quintic, slopes given), ``"interior-point"`` (quintic, optimal slopes) or
-///     ``"local"`` (quartic).
+///     ``"active-set"`` (quintic, slopes of Fritsch and Butland), ``"interior-point"`` (quintic, optimal
+///     or given slopes) or ``"local"`` (quartic).
 /// iterations : int
 ///     Linear solves.
 /// active : int
@@ -25,6 +25,8 @@ use crate::pickle::{self, Kind, Reduced};
 ///     Whether Bernstein coefficients certify every segment to be monotone.
 /// energy : float
 ///     The minimised energy, in the data's units.
+/// limited : list of int
+///     Points whose given slopes were limited (``clip=True``).
 ///
 /// Examples
 /// --------
@@ -49,6 +51,8 @@ pub(crate) struct MonotoneDiagnostics {
     certified: bool,
     /// The minimised energy, in the data's units.
     energy: f64,
+    /// Points whose given slopes were limited.
+    limited: Vec<usize>,
 }
 
 impl MonotoneDiagnostics {
@@ -66,6 +70,7 @@ impl MonotoneDiagnostics {
             converged: d.converged,
             certified: d.certified,
             energy: d.energy,
+            limited: d.limited.clone(),
         }
     }
 
@@ -78,6 +83,7 @@ impl MonotoneDiagnostics {
             converged: true,
             certified: true,
             energy: fit.bending_energy(),
+            limited: Vec::new(),
         }
     }
 }
@@ -88,7 +94,7 @@ impl MonotoneDiagnostics {
         let truth = |value| if value { "True" } else { "False" };
         format!(
             "MonotoneDiagnostics(solver='{}', iterations={}, active={}, kkt_residual={:e}, \
-             converged={}, certified={}, energy={})",
+             converged={}, certified={}, energy={}, limited={:?})",
             self.solver,
             self.iterations,
             self.active,
@@ -96,6 +102,7 @@ impl MonotoneDiagnostics {
             truth(self.converged),
             truth(self.certified),
             self.energy,
+            self.limited,
         )
     }
 

@@ -187,10 +187,14 @@ impl MonotoneQuartic {
 ///     The axis of y that goes with x.
 /// slopes : {"optimal", "fritsch-butland"} or array_like
 ///     Slopes at the knots: chosen together with the second derivatives; Fritsch and Butland's
-///     harmonic means (the paper's); or given ones (in the shape of ``y``, or (n,) for every column),
-///     limited to what a monotone quintic allows.
+///     harmonic means, with the paper's program; or given ones (in the shape of ``y``, or (n,) for every
+///     column). Those that a C² monotone quintic can have are taken as they are, up to nine times the
+///     secant at one end of a segment or six times at both; others are refused.
 /// fairness : {"bending", "parametric"}
 ///     What is least: ``∫ f''² dx``, or the paper's sum (20) over the segments' own parameters.
+/// clip : bool
+///     Limit given slopes that no C² monotone quintic has, instead of refusing them;
+///     ``diagnostics.limited`` says where.
 /// extrapolate : {"linear", "clip", "periodic", True, False} or pair of them
 ///     Outside the knots: the tangent line at the end (then the function is C¹ and monotone everywhere),
 ///     the end value, the function repeated, the end polynomial, NaN; of a pair the first below the
@@ -208,8 +212,11 @@ impl MonotoneQuartic {
 /// -----
 /// Equation (16), and the program (17), (20), (22), (23) of Ng, Kong and Ong, *A class of Bézier-like
 /// splines in smooth monotone interpolation* (paper 003), as a strictly convex box program in the
-/// second derivatives; with optimal slopes an interior-point method on slopes and second derivatives,
-/// within 0.5 % of the least energy, small segments beside large ones included; the result does not jump
+/// second derivatives: that is ``slopes="fritsch-butland"`` alone. Its conditions α, β ≥ 0 are more than
+/// monotonicity asks, and make second derivatives about three times too large on smooth data (order
+/// two). Optimal and given slopes have all second derivatives that are monotone to choose from (order
+/// four, if given slopes are the function's): an interior-point method on the exact cone, within 0.5 %
+/// of the least energy, small segments beside large ones included; the result does not jump
 /// as the data move. Data that are not monotone are fitted piecewise; flats stay flat. Cost O(n).
 ///
 /// Examples
@@ -229,22 +236,25 @@ impl MonotoneQuintic {
     #[new]
     #[pyo3(
         signature = (x, y, axis=0, *, slopes=SlopesOption::Optimal, fairness=Fairness::Bending,
-                     extrapolate=Some(Extrapolation::LINEAR)),
+                     clip=false, extrapolate=Some(Extrapolation::LINEAR)),
         text_signature = "(x, y, axis=0, *, slopes='optimal', fairness='bending', \
-                          extrapolate='linear')"
+                          clip=False, extrapolate='linear')"
     )]
+    // One argument a keyword: this is the signature that users see.
+    #[allow(clippy::too_many_arguments)]
     fn new(
         x: &Bound<'_, PyAny>,
         y: &Bound<'_, PyAny>,
         #[pyo3(from_py_with = options::axis)] axis: isize,
         #[pyo3(from_py_with = options::slopes)] slopes: SlopesOption,
         #[pyo3(from_py_with = options::fairness)] fairness: Fairness,
+        clip: bool,
         #[pyo3(from_py_with = options::extrapolate)] extrapolate: Option<Extrapolation>,
     ) -> PyResult<PyClassInitializer<Self>> {
         let data = Data::of(x, y, axis)?;
         let extrapolate = extrapolate.unwrap_or_default();
         let fits = data.fit(x.py(), &slopes, |x, y, slopes, go_on| {
-            let options = QuinticOptions { slopes, fairness, extrapolate };
+            let options = QuinticOptions { slopes, fairness, clip, extrapolate };
             shapespline::monotone::MonotoneQuintic::new_with(x, y, &options, go_on)
         })?;
         Ok(object(Fits::Quintic(fits), data.layout, Self))

@@ -64,13 +64,20 @@ fn family(object: &Bound<'_, PyAny>) -> PyResult<Kind> {
 
 impl Kind {
     /// Options that the kind lacks are refused, not ignored.
-    fn check(self, slopes: Option<&SlopesOption>, fairness: bool, shape: bool) -> PyResult<()> {
+    fn check(
+        self,
+        slopes: Option<&SlopesOption>,
+        fairness: bool,
+        clip: bool,
+        shape: bool,
+    ) -> PyResult<()> {
         let refuse = |argument: &str, what: &str, own: &str, other: &str| {
             let text = format!("{what} is for kind '{own}', got it with kind '{other}'");
             Err(invalid(argument, &[], Value::Nothing, text))
         };
         match self {
             Self::Quintic if shape => refuse("shape", "shape", "quartic", "quintic"),
+            Self::Quartic if clip => refuse("clip", "clip=True", "quintic", "quartic"),
             Self::Quartic if fairness => refuse("fairness", "fairness", "quintic", "quartic"),
             Self::Quartic if matches!(slopes, Some(SlopesOption::Optimal)) => {
                 refuse("slopes", "slopes='optimal'", "quintic", "quartic")
@@ -115,6 +122,8 @@ fn shape(object: &Bound<'_, PyAny>) -> PyResult<Option<Shape>> {
 ///     two axes, slopes of shape (n,) are for every row.
 /// fairness : {"bending", "parametric"}, optional
 ///     For the quintic alone; None is "bending".
+/// clip : bool
+///     For the quintic alone: limit given slopes that no monotone function has, instead of refusing them.
 /// shape : float or pair of array_like, optional
 ///     For the quartic alone; None is 1.
 /// extrapolate : {"linear", "clip", "periodic", True, False} or pair of them
@@ -143,9 +152,9 @@ fn shape(object: &Bound<'_, PyAny>) -> PyResult<Option<Shape>> {
 #[pyfunction]
 #[pyo3(
     signature = (x, y, kind=Kind::Quintic, *, offsets=None, slopes=None, fairness=None,
-                 shape=None, extrapolate=Some(Extrapolation::LINEAR)),
+                 clip=false, shape=None, extrapolate=Some(Extrapolation::LINEAR)),
     text_signature = "(x, y, kind='quintic', *, offsets=None, slopes=None, fairness=None, \
-                      shape=None, extrapolate='linear')"
+                      clip=False, shape=None, extrapolate='linear')"
 )]
 // One argument a keyword: this is the signature that users see.
 #[allow(clippy::too_many_arguments)]
@@ -157,13 +166,14 @@ pub(crate) fn fit_many_monotone(
     offsets: Option<Offsets>,
     #[pyo3(from_py_with = slopes)] slopes: Option<SlopesOption>,
     #[pyo3(from_py_with = fairness)] fairness: Option<Fairness>,
+    clip: bool,
     #[pyo3(from_py_with = shape)] shape: Option<Shape>,
     #[pyo3(from_py_with = options::extrapolate)] extrapolate: Option<Extrapolation>,
 ) -> PyResult<Py<PyAny>> {
     let (x, y) = (array("x", x)?, array("y", y)?);
     let ragged = offsets.is_some();
     let bounds = offsets_of(&x, &y, offsets)?;
-    kind.check(slopes.as_ref(), fairness.is_some(), shape.is_some())?;
+    kind.check(slopes.as_ref(), fairness.is_some(), clip, shape.is_some())?;
     let given = match &slopes {
         // Rows of two axes may have their slopes in common.
         Some(slopes) if !ragged => {
@@ -182,7 +192,7 @@ pub(crate) fn fit_many_monotone(
     let fits = match kind {
         Kind::Quintic => Fits::Quintic(fit_rows(py, &bounds, |from, to, go_on| {
             let fairness = fairness.unwrap_or_default();
-            let options = QuinticOptions { slopes: of(from, to), fairness, extrapolate };
+            let options = QuinticOptions { slopes: of(from, to), fairness, clip, extrapolate };
             monotone::MonotoneQuintic::new_with(&x[from..to], &y[from..to], &options, go_on)
         })?),
         Kind::Quartic => Fits::Quartic(fit_rows(py, &bounds, |from, to, _| {

@@ -32,6 +32,9 @@ pub(crate) fn column_error(error: &MonotoneError, layout: &Layout, k: usize) -> 
         MonotoneError::OutOfRange { quantity, argument: "y", value, .. } => format!(
             "the {quantity} at y[{place}] = {value} is out of the range of double precision; rescale the data"
         ),
+        MonotoneError::Slope { value, rule, .. } => {
+            format!("slopes[{place}] {rule}, got {value}; clip=True limits such slopes")
+        }
         MonotoneError::NotIncreasing { .. }
         | MonotoneError::TooFew { .. }
         | MonotoneError::Shape { .. }

@@ -33,7 +33,7 @@ pub(super) fn run(data: &[u8]) {
         judge(&mut bytes, &x, &y, MonotoneQuartic::new(&x, &y, &options));
     } else {
         let fairness = if bytes.flag() { Fairness::Bending } else { Fairness::Parametric };
-        let options = QuinticOptions { slopes, fairness, extrapolate };
+        let options = QuinticOptions { slopes, fairness, clip: bytes.flag(), extrapolate };
         let made = MonotoneQuintic::new(&x, &y, &options);
         if let Ok(quintic) = &made {
             let diagnostics = quintic.diagnostics();
