@@ -15,7 +15,7 @@ CONTROL = np.array([[[0.0, 0], [1, 1], [2, 1], [3, 0]]])
 KNOTS = np.array([0.0, 0, 0, 1, 2, 2, 2])
 SQUARE = np.array([[0.0, 0], [0, 1], [1, 1], [1, 0]])
 CURVES = {family.__name__: family(POINTS, U) for family in
-          (ss.NuSpline, ss.TensionSpline, ss.CatmullRom)}  # fmt: skip
+          (ss.FairSpline, ss.NuSpline, ss.TensionSpline, ss.CatmullRom)}  # fmt: skip
 NU = CURVES["NuSpline"]
 PIECES = ss.PiecewiseBezier(NU.bezier, U)
 F = ss.MonotoneQuintic(X, Y)
@@ -39,7 +39,10 @@ def _families() -> list[Argument]:
     found = []
     for name, curve in CURVES.items():
         family = type(curve)
-        for make, call in ((family, name), (family.shape_preserving, f"{name}.shape_preserving")):
+        calls = [(family, name)]
+        if family is not ss.FairSpline:
+            calls.append((family.shape_preserving, f"{name}.shape_preserving"))
+        for make, call in calls:
             found += [
                 Argument(call, "points", make, POINTS),
                 Argument(call, "parameters", lambda u, make=make: make(POINTS, u), U),

@@ -1,5 +1,6 @@
 """What to fit: data sets with their ends, ready to be passed to a curve's constructor."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -10,9 +11,28 @@ import shapespline as ss
 
 STRATEGIES = ("nussp", "growth", "fairest")
 #: the families of curves that must pass the same checks
-FAMILIES = (ss.NuSpline, ss.TensionSpline, ss.CatmullRom)
+FAMILIES = (ss.FairSpline, ss.NuSpline, ss.TensionSpline, ss.CatmullRom)
+#: those of them that can be given tension
+TENSE = (ss.NuSpline, ss.TensionSpline, ss.CatmullRom)
+#: the names that fits know the families by
+METHODS = {
+    ss.FairSpline: "fair",
+    ss.NuSpline: "nu",
+    ss.TensionSpline: "tension",
+    ss.CatmullRom: "catmull-rom",
+}
 #: what Karavelas & Kaklis and Gautam ask of a segment: they leave out Manni's (i.3) at the nodes
 PAPERS = ("convexity", "inflection", "torsion", "coplanarity", "collinearity")
+
+
+def preserving(family: type[ss.SpaceCurve]) -> Callable[..., ss.SpaceCurve]:
+    """Return what makes the shape-preserving curve of a family."""
+    return family if family is ss.FairSpline else family.shape_preserving
+
+
+def tension_of(curve: ss.SpaceCurve) -> npt.NDArray[np.float64]:
+    """Return the tension of a curve, none of a fair one."""
+    return np.zeros(len(curve.points)) if isinstance(curve, ss.FairSpline) else curve.tension
 
 
 @dataclass(frozen=True)
@@ -30,11 +50,13 @@ class Case:
         return self.name if self.family is ss.NuSpline else f"{name}: {self.name}"
 
     def fit(self, **options: object) -> ss.SpaceCurve:
-        """Return the curve with given tension."""
+        """Return the curve with given tension, which a fair one does not have."""
         return self.family(self.points, self.parameters, boundary=self.boundary, **options)
 
     def tense(self, tension: npt.ArrayLike) -> ss.SpaceCurve:
         """Return the curve with tension, in the units of ν or 1/λ − 1, whatever the family."""
+        if self.family is ss.FairSpline:
+            return self.fit()
         tension = np.asarray(tension, dtype=float)
         if self.family is ss.TensionSpline:
             return self.fit(tangent_scale=1 / (1 + tension))
@@ -43,12 +65,11 @@ class Case:
         return self.fit(tension=tension)
 
     def preserve(self, **options: object) -> ss.SpaceCurve:
-        """Return the shape-preserving curve; Catmull–Rom curves know no strategy."""
-        if self.family is ss.CatmullRom:
+        """Return the shape-preserving curve; only ν and tension splines know strategies."""
+        if self.family in (ss.FairSpline, ss.CatmullRom):
             options.pop("strategy", None)
-        return self.family.shape_preserving(
-            self.points, self.parameters, boundary=self.boundary, **options
-        )
+        make = preserving(self.family)
+        return make(self.points, self.parameters, boundary=self.boundary, **options)
 
     def explicit(self) -> "Case":
         """Return the same case with its parameters as an array."""

@@ -7,6 +7,7 @@ beside each family of bad ones shows that it is the fault, and nothing else, tha
 import numpy as np
 import pytest
 
+import cases
 import polygons
 import shapespline as ss
 
@@ -193,7 +194,7 @@ BAD_VALUES = {
     "no threads": (many(threads=0), ["threads", "0"]),
     "parameters of some points": (many(parameters=U[:-1]), ["parameters", "5", "6"]),
     "NaN exponent of many": (many(parameters=np.nan), ["parameters", "nan"]),
-    "negative step of many": (many(step=-1.0), ["step", "-1"]),
+    "negative step of many": (many(method="nu", step=-1.0), ["step", "-1"]),
     "λ above one of many": (
         many(method="tension", shape_preserving=False, tangent_scale=2.0),
         ["tangent_scale", "between 1e-65 and 1", "2"],
@@ -257,8 +258,19 @@ BAD_KINDS = {
     "safety of text": (safe(safety="some"), ["safety"]),
     "offsets of text": (many("ab"), ["offsets"]),
     "fractional threads": (many(threads=1.5), ["threads"]),
-    "an option of another method": (many(safety=0.5), ["safety", "'nu'", "strategy"]),
-    "tension where it is searched for": (many(tension=1.0), ["tension", "shape_preserving"]),
+    "an option of another method": (
+        many(safety=0.5),
+        ["safety", "'catmull-rom'", "'fair'", "energy"],
+    ),
+    "tension where it is searched for": (
+        many(method="nu", tension=1.0),
+        ["tension", "shape_preserving"],
+    ),
+    "an option of another method of fit": (
+        lambda: ss.fit(POINTS, strategy="growth"),
+        ["strategy", "'nu', 'tension'", "'fair'"],
+    ),
+    "a method that is no name": (lambda: ss.fit(POINTS, method=3), ["method", "string", "int"]),
     "query of text": (call("middle"), ["u"]),
     "complex query": (call(1j), ["u"]),
     "fractional derivative": (call(0.5, 1.5), ["nu"]),
@@ -346,11 +358,11 @@ def test_a_fault_far_inside_is_named():
 
 
 @pytest.mark.parametrize("scale", [1e-300, 1e300])
-@pytest.mark.parametrize("family", [ss.NuSpline, ss.TensionSpline, ss.CatmullRom])
+@pytest.mark.parametrize("family", cases.FAMILIES)
 def test_numbers_at_the_edge_are_fitted_or_refused_but_never_wrong(family, scale):
     """Beyond the promised 1e±100 an error is fine; a curve with NaN or the wrong points is not."""
     try:
-        curve = family.shape_preserving(POINTS * scale)
+        curve = cases.preserving(family)(POINTS * scale)
     except ValueError:
         return
     assert np.isfinite(curve.tangents).all()

@@ -19,7 +19,7 @@ import shapespline as ss
 from shapespline import _progress, _tables, cli
 
 COMMAND = Path(sys.executable).with_name("shapespline")
-CURVES = {"nu": ss.NuSpline, "tension": ss.TensionSpline, "catmull-rom": ss.CatmullRom}
+CURVES = {method: family for family, method in cases.METHODS.items()}
 FUNCTIONS = {"quartic": ss.MonotoneQuartic, "quintic": ss.MonotoneQuintic}
 
 
@@ -59,7 +59,7 @@ def test_every_family_on_real_files(method, name, run, tmp_path):
     )
     assert (status, errors) == (0, "")
     columns = polygons.load(name)
-    expected = CURVES[method].shape_preserving(
+    expected = cases.preserving(CURVES[method])(
         polygons.load_points(name), **({"parameters": columns["u"]} if "u" in columns else {})
     )
     names, rows = table(out)
@@ -99,7 +99,7 @@ def test_options_reach_the_curve(run, tmp_path):
     curve = tmp_path / "c.json"
     status, _, errors = run(
         "fit", polygons.DATA / "gm_feature_line.csv", f"--start-tangent={start}",
-        f"--end-tangent={end}", "--strategy", "nussp", "--step", "0.5", "-o", curve,
+        f"--end-tangent={end}", "--method=nu", "--strategy=nussp", "--step=0.5", "-o", curve,
     )  # fmt: skip
     assert (status, errors) == (0, "")
     tension = json.loads(curve.read_text(encoding="utf-8"))["tension"]
@@ -111,8 +111,9 @@ def test_options_reach_the_curve(run, tmp_path):
 @pytest.mark.parametrize(
     ("arguments", "expected"),
     [
-        (["--tension", "2"], lambda p: ss.NuSpline(p, tension=2)),
-        (["--parameters", "0.25"], lambda p: ss.NuSpline.shape_preserving(p, 0.25)),
+        (["--method", "nu", "--tension", "2"], lambda p: ss.NuSpline(p, tension=2)),
+        (["--parameters", "0.25"], lambda p: ss.FairSpline(p, 0.25)),
+        (["--energy", "bending"], lambda p: ss.FairSpline(p, energy="bending")),
         (
             ["--method", "tension", "--tangent-scale", "0.4", "--boundary", "circular"],
             lambda p: ss.TensionSpline(p, boundary="circular", tangent_scale=0.4),
@@ -154,28 +155,31 @@ def test_samples_on_standard_output_and_by_arc_length(run, tmp_path):
     names, *rows = out.splitlines()
     assert names == "x,y"
     rows = np.loadtxt(io.StringIO("\n".join(rows)), delimiter=",")
-    curve = ss.NuSpline.shape_preserving([[0, 0], [1, 1], [2, 0], [3, 1]])
+    curve = ss.fit([[0, 0], [1, 1], [2, 0], [3, 1]])
     np.testing.assert_array_equal(rows, curve.sample(5, by="arc-length"))
 
 
 def test_a_shape_that_is_not_kept_is_status_1_and_still_written(run, tmp_path):
     points = polygons.DATA / "protein_1a8o_ca.csv"
     curve = tmp_path / "c.json"
-    status, text, errors = run("fit", points, "--tension", "0", "-o", curve)
+    status, text, errors = run("fit", points, "--method=nu", "--tension", "0", "-o", curve)
     assert (status, errors) == (1, "")
     assert text.startswith("shape violated on 69 segments\n")
     assert run("check", points, curve)[0] == 1
     # The limit of iterations: the last curve, its report, and why.
-    status, text, errors = run("fit", points, "--max-iterations", "1", "-o", curve)
-    assert status == 1
-    assert text.startswith("shape violated")
-    assert len(errors.splitlines()) == 1
-    assert "iteration" in errors
-    assert run("check", points, curve)[0] == 1
+    for method in ("fair", "nu", "tension"):
+        status, text, errors = run(
+            "fit", points, "--method", method, "--max-iterations", "1", "-o", curve
+        )
+        assert status == 1
+        assert text.startswith("shape violated")
+        assert len(errors.splitlines()) == 1
+        assert "iteration" in errors
+        assert run("check", points, curve)[0] == 1
 
 
 @pytest.mark.parametrize("ending", ["png", "svg", "pdf"])
-@pytest.mark.parametrize(("method", "name"), [("nu", "gm_feature_line"), ("quintic", "akima")])
+@pytest.mark.parametrize(("method", "name"), [("fair", "gm_feature_line"), ("quintic", "akima")])
 def test_figures(ending, method, name, run, tmp_path):
     points = polygons.DATA / f"{name}.csv"
     first, second = (tmp_path / f"{i}.{ending}" for i in "ab")
@@ -279,10 +283,11 @@ def test_bad_points(text, arguments, line, what, run, tmp_path):
 @pytest.mark.parametrize(
     ("arguments", "what"),
     [
-        (["--safety", "0.5"], "--safety is no option of method nu; its options are --parameters"),
+        (["--safety", "0.5"], "--safety is no option of method fair; its options are --parameters"),
+        (["--tension", "1"], "methods that have it: nu, catmull-rom"),
         (["--method=quintic", "--tension", "1"], "--tension is no option of method quintic"),
-        (["--tension", "-1"], "tension"),
-        (["--tension", "1", "--step", "1"], "--step is for a search"),
+        (["--method=nu", "--tension", "-1"], "tension"),
+        (["--method=nu", "--tension", "1", "--step", "1"], "--step is for a search"),
         (["--coplanarity", "2"], "coplanarity"),
         (["--criteria", "beauty"], "criteria must be one of"),
         (["--parameters", "chordial"], "parameters must be"),

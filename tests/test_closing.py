@@ -36,18 +36,15 @@ def test_ends_that_agree_to_rounding_close(family, name):
     assert (points[-1] != points[0]).any()
     exact = points.copy()
     exact[-1] = exact[0]
-    for make in (family, family.shape_preserving):
+    for make in (family, cases.preserving(family)):
         curve = make(points, boundary="periodic")
         np.testing.assert_array_equal(curve.points, exact)
         np.testing.assert_array_equal(curve.bezier, make(exact, boundary="periodic").bezier)
     assert curve.check().ok
     fits = ss.fit_many(np.vstack([points, points]), [0, len(points), 2 * len(points)],
-                       {v: k for k, v in METHODS.items()}[family], boundary="periodic")  # fmt: skip
+                       method=cases.METHODS[family], boundary="periodic")  # fmt: skip
     assert fits.ok
     np.testing.assert_array_equal(fits[1].points, exact)
-
-
-METHODS = {"nu": ss.NuSpline, "tension": ss.TensionSpline, "catmull-rom": ss.CatmullRom}
 
 
 def test_polygons_and_foreign_curves_close_as_well():
@@ -78,7 +75,7 @@ def test_errors_show_points_in_their_own_dimension(dim):
     shown = "(2, 2)" if dim == 2 else "(2, 2, 2)"
     calls = [
         *(family for family in cases.FAMILIES),
-        *(family.shape_preserving for family in cases.FAMILIES),
+        *(family.shape_preserving for family in cases.TENSE),
         ss.polygon_shape,
         ss.inflection_count,
         lambda p: ss.fit_many(p, [0, 3], errors="raise"),
@@ -91,6 +88,8 @@ def test_errors_show_points_in_their_own_dimension(dim):
         assert caught.value.value == (2.0,) * dim
 
 
+#: The shape-preserving fit of each method.
+FITS = {method: cases.preserving(family) for family, method in cases.METHODS.items()}
 OPEN = np.array([[0, 0, 0], [4, 0, 0], [4.5, 0.5, 0], [4.5, 1, 0.5], [4, 2, 5.0], [0, 2, 1]])
 CLOSED = np.vstack([OPEN, OPEN[:1]])
 KNOTS = np.array([0.0, 1, 3, 4, 5, 7, 8])
@@ -101,8 +100,9 @@ every_dimension = pytest.mark.parametrize("dim", [2, 3])
 
 def same(a, b):
     assert type(a) is type(b)
-    for name in ("points", "parameters", "knots", "tangents", "tension", "bezier"):
+    for name in ("points", "parameters", "knots", "tangents", "bezier"):
         np.testing.assert_array_equal(getattr(a, name), getattr(b, name))
+    np.testing.assert_array_equal(cases.tension_of(a), cases.tension_of(b))
     assert a.boundary == b.boundary == "periodic"
     assert a.check().to_dict() == b.check().to_dict()
 
@@ -111,7 +111,7 @@ def same(a, b):
 @every_dimension
 @every_parametrization
 def test_closed_data_need_not_repeat_the_first_point(family, dim, parameters):
-    for make in (family, family.shape_preserving):
+    for make in (family, cases.preserving(family)):
         expected = make(CLOSED[:, :dim], parameters, boundary="periodic")
         for points in (OPEN, CLOSED):
             for boundary in ({}, {"boundary": "periodic"}):
@@ -120,23 +120,25 @@ def test_closed_data_need_not_repeat_the_first_point(family, dim, parameters):
 
 
 @every_parametrization
-@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("method", cases.METHODS.values())
 @pytest.mark.parametrize("threads", [None, 2])
 def test_closed_collections(method, parameters, threads):
     """Each curve takes the parameters of its points, and one more where they do not return."""
     points, offsets = np.vstack([OPEN, CLOSED, OPEN]), [0, 6, 13, 19]
     if isinstance(parameters, np.ndarray):
         parameters = np.r_[parameters, 2 * parameters, 3 * parameters]
-    fits = ss.fit_many(points, offsets, method, parameters, closed=True, threads=threads)
+    fits = ss.fit_many(
+        points, offsets, method=method, parameters=parameters, closed=True, threads=threads
+    )
     assert fits.ok, fits.errors
     for k, fit in enumerate(fits):
         own = parameters
         if isinstance(parameters, np.ndarray):
             own = parameters[7 * k : 7 * k + 7]
-        same(fit, METHODS[method].shape_preserving(OPEN, own, closed=True))
+        same(fit, FITS[method](OPEN, own, closed=True))
     if isinstance(parameters, np.ndarray):
         with pytest.raises(ss.InputError, match=r"parameters must have length 21 \(one for each"):
-            ss.fit_many(points, offsets, method, parameters[:19], closed=True)
+            ss.fit_many(points, offsets, method=method, parameters=parameters[:19], closed=True)
 
 
 def test_values_of_points_are_those_of_the_points_given():
@@ -162,9 +164,9 @@ def test_values_of_points_are_those_of_the_points_given():
 
 
 ENTRIES = {
-    **METHODS,
-    **{f"{name} preserving": family.shape_preserving for name, family in METHODS.items()},
-    "fit_many": lambda p, u="chordal", **o: ss.fit_many(p, [0, len(p)], "nu", u, **o),
+    **{cases.METHODS[family]: family for family in cases.TENSE},
+    **{f"{name} preserving": fit for name, fit in FITS.items()},
+    "fit_many": lambda p, u="chordal", **o: ss.fit_many(p, [0, len(p)], parameters=u, **o),
     "polygon_shape": ss.polygon_shape,
     "check_shape": lambda p, u="chordal", **o: ss.check_shape(
         p, ss.NuSpline(CLOSED, boundary="periodic").to_bspline(), parameters=u, **o),

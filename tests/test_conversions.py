@@ -234,7 +234,8 @@ warnings.simplefilter("ignore")  # NumPy 2.4 would have strides left alone
 n = 60_000
 t = np.linspace(0, 400, n)
 points = np.column_stack([np.cos(t), np.sin(t), t / 10])
-curves = [family(points, t) for family in (ss.NuSpline, ss.TensionSpline, ss.CatmullRom)]
+families = (ss.NuSpline, ss.TensionSpline, ss.CatmullRom, ss.FairSpline)
+curves = [family(points, t) for family in families]
 f, rows = ss.MonotoneQuintic(t, t), ss.fit_many_monotone([t[:9]] * 2, [t[:9]] * 2)
 pieces = ss.PiecewiseBezier(curves[0].bezier, t)
 offsets = np.arange(0, n + 1, 100)
@@ -254,8 +255,8 @@ calls = [
     lambda a: f.inverse(a),
     lambda a: rows(a),
     lambda a: ss.fit_many_monotone(a.reshape(-1, 100), t.reshape(-1, 100)),
-    lambda a: ss.fit_many(points, offsets, "catmull-rom", a),
-    lambda a: ss.fit_many(np.stack([a, a * a], 1), offsets, "catmull-rom"),
+    lambda a: ss.fit_many(points, offsets, method="catmull-rom", parameters=a),
+    lambda a: ss.fit_many(np.stack([a, a * a], 1), offsets, method="catmull-rom"),
     lambda a: ss.NuSpline(np.stack([a, a * a], 1)),
 ]
 

@@ -14,6 +14,8 @@ CURVES = {
     "nu": lambda points: ss.NuSpline(points, tension=1.0),
     "tension": lambda points: ss.TensionSpline(points, tangent_scale=0.6),
     "catmull-rom": ss.CatmullRom,
+    "fair": ss.FairSpline,
+    "fair, bending": lambda points: ss.FairSpline(points, energy="bending"),
     "scipy": lambda points: CubicSpline(np.arange(len(points)), points),
 }
 
@@ -21,7 +23,7 @@ CURVES = {
 def image(curve):
     """Return the image of a curve, piece by piece, as SciPy evaluates it."""
     if isinstance(curve, ss.SpaceCurve):
-        return BPoly(curve.bezier.swapaxes(0, 1), curve.parameters)
+        return BPoly(curve.bezier.swapaxes(0, 1), curve.knots)
     return curve
 
 
@@ -74,7 +76,11 @@ def test_all_but_length_and_curvature_are_free_of_scale(scale, dimension):
 
 def test_curvature_jumps_where_it_should():
     points = np.cumsum(RNG.normal(size=(10, 3)), axis=0)
-    smooth = [ss.NuSpline(points, tension=2.0), ss.TensionSpline(points, tangent_scale=0.5)]
+    smooth = [
+        ss.NuSpline(points, tension=2.0),
+        ss.TensionSpline(points, tangent_scale=0.5),
+        ss.FairSpline(points),
+    ]
     for curve in smooth:
         assert curve.fairness().max_curvature_jump == 0.0
         assert np.isfinite(curve.fairness().variation)

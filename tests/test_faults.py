@@ -39,6 +39,7 @@ def objects():
         "nu": nu,
         "tension": ss.TensionSpline.shape_preserving(POINTS),
         "catmull-rom": ss.CatmullRom.shape_preserving(POINTS),
+        "fair": ss.FairSpline(POINTS),
         "report": nu.check(),
         "many": ss.fit_many(POINTS, [0, 5, 12]),
         "quartic": ss.MonotoneQuartic(X, Y),
@@ -52,7 +53,7 @@ def ask(thing):
         return np.array([v.margin for v in thing.segments])
     if isinstance(thing, (ss.MonotoneQuartic, ss.MonotoneQuintic)):
         return thing(np.linspace(-1, 12, 50))
-    if isinstance(thing, (ss.NuSpline, ss.TensionSpline, ss.CatmullRom)):
+    if isinstance(thing, ss.SpaceCurve):
         u = np.linspace(thing.parameters[0] - 1, thing.parameters[-1] + 1, 50)
         return np.hstack([thing(u).ravel(), thing.curvature(u), [thing.arc_length()]])
     return np.hstack([ask(curve) for curve in thing])
@@ -95,8 +96,9 @@ warnings.simplefilter("ignore")  # of Python 3.12: that a process with threads i
 def work(n):
     t = np.linspace(0, n / 5, n)
     points = np.column_stack([np.cos(t), np.sin(t), 0.1 * t])
-    for family in (ss.NuSpline, ss.TensionSpline, ss.CatmullRom):
-        curve = family.shape_preserving(points)
+    for fit in (ss.FairSpline, *(family.shape_preserving for family in
+                                 (ss.NuSpline, ss.TensionSpline, ss.CatmullRom))):
+        curve = fit(points)
         u = np.random.default_rng(1).uniform(*curve.parameters[[0, -1]], 4 * n)
         curve(u), curve.curvature(u), curve.arc_length(), curve.sample(n, by="arc-length")
         assert curve.check().ok

@@ -9,11 +9,12 @@ import time
 import numpy as np
 import pytest
 
+import cases
 import polygons
 import shapespline as ss
 import threads
 
-CLASSES = {"nu": ss.NuSpline, "tension": ss.TensionSpline, "catmull-rom": ss.CatmullRom}
+CLASSES = {method: family for family, method in cases.METHODS.items()}
 every_method = pytest.mark.parametrize("method", CLASSES)
 
 
@@ -29,7 +30,7 @@ def assert_same(a, b):
     assert type(a) is type(b)
     np.testing.assert_array_equal(a.bezier, b.bezier)
     np.testing.assert_array_equal(a.parameters, b.parameters)
-    np.testing.assert_array_equal(a.tension, b.tension)
+    np.testing.assert_array_equal(cases.tension_of(a), cases.tension_of(b))
     assert a.diagnostics == b.diagnostics
 
 
@@ -38,12 +39,12 @@ def assert_same(a, b):
 @every_method
 def test_each_curve_is_that_of_its_class(method, dim, threads):
     points, offsets = collection(dim=dim)
-    fits = ss.fit_many(points, offsets, method, threads=threads)
+    fits = ss.fit_many(points, offsets, method=method, threads=threads)
     assert fits.ok
     assert dict(fits.errors) == {}
     assert len(fits) == len(offsets) - 1
     for k, curve in enumerate(fits):
-        assert_same(curve, CLASSES[method].shape_preserving(points[offsets[k] : offsets[k + 1]]))
+        assert_same(curve, cases.preserving(CLASSES[method])(points[offsets[k] : offsets[k + 1]]))
         assert curve.check().ok
 
 
@@ -53,6 +54,7 @@ def test_each_curve_is_that_of_its_class(method, dim, threads):
         ("nu", {"strategy": "nussp", "step": 1.0, "boundary": "circular", "coplanarity": 0.1}),
         ("tension", {"strategy": "reduction", "step": 0.7, "criteria": ["torsion", "convexity"]}),
         ("catmull-rom", {"safety": 0.5, "continuity": "G1", "collinearity": 0.1}),
+        ("fair", {"energy": "bending", "boundary": "circular", "collinearity": 0.1}),
         ("nu", {"boundary": ss.Tangents([1.0, 0, 0], [0, 1.0, 0]), "parameters": "uniform"}),
     ],
 )
@@ -61,10 +63,10 @@ def test_options_reach_every_curve(method, options):
     keep = np.diff(offsets) >= 3
     rows = [points[a:b] for a, b in zip(offsets[:-1][keep], offsets[1:][keep], strict=True)]
     points, offsets = np.vstack(rows), np.r_[0, np.cumsum([len(row) for row in rows])]
-    fits = ss.fit_many(points, offsets, method, **options)
+    fits = ss.fit_many(points, offsets, method=method, **options)
     assert fits.ok, fits.errors
     for row, curve in zip(rows, fits, strict=True):
-        assert_same(curve, CLASSES[method].shape_preserving(row, **options))
+        assert_same(curve, cases.preserving(CLASSES[method])(row, **options))
 
 
 @pytest.mark.parametrize(
@@ -78,7 +80,9 @@ def test_options_reach_every_curve(method, options):
 )
 def test_given_tension(method, options):
     points, offsets = collection(8)
-    fits = ss.fit_many(points, offsets, method, "chordal", shape_preserving=False, **options)
+    fits = ss.fit_many(
+        points, offsets, method=method, parameters="chordal", shape_preserving=False, **options
+    )
     for k, curve in enumerate(fits):
         row = points[offsets[k] : offsets[k + 1]]
         assert_same(curve, CLASSES[method](row, "chordal", **options))
@@ -104,7 +108,7 @@ def faulty():
 @every_method
 def test_faults_are_those_of_their_curves_alone(method):
     points, offsets = faulty()
-    fits = ss.fit_many(points, offsets, method)
+    fits = ss.fit_many(points, offsets, method=method)
     assert sorted(fits.errors) == [1, 3, 5]
     assert [k for k, curve in enumerate(fits) if curve is None] == [1, 3, 5]
     assert not fits.ok
@@ -118,9 +122,9 @@ def test_faults_are_those_of_their_curves_alone(method):
         assert [piece for piece in pieces[k] if piece not in text] == [], text
     for k in (0, 2, 4, 6):
         row = points[offsets[k] : offsets[k + 1]]
-        assert_same(fits[k], CLASSES[method].shape_preserving(row))
+        assert_same(fits[k], cases.preserving(CLASSES[method])(row))
     with pytest.raises(ValueError, match="curve 1"):
-        ss.fit_many(points, offsets, method, errors="raise")
+        ss.fit_many(points, offsets, method=method, errors="raise")
     with pytest.raises(TypeError):
         fits.errors[0] = None
 
@@ -128,7 +132,7 @@ def test_faults_are_those_of_their_curves_alone(method):
 @pytest.mark.parametrize("method", ["nu", "tension"])
 def test_curves_that_do_not_converge_are_told_with_what_they_have(method):
     points, offsets = collection(10)
-    fits = ss.fit_many(points, offsets, method, max_iterations=1)
+    fits = ss.fit_many(points, offsets, method=method, max_iterations=1)
     assert 0 < len(fits.errors) < len(fits)
     for k, curve in enumerate(fits):
         if curve is not None:
@@ -141,7 +145,7 @@ def test_curves_that_do_not_converge_are_told_with_what_they_have(method):
         np.testing.assert_array_equal(error.curve.points, points[offsets[k] : offsets[k + 1]])
         assert not error.report.ok
     with pytest.raises(ss.ConvergenceError):
-        ss.fit_many(points, offsets, method, max_iterations=1, errors="raise")
+        ss.fit_many(points, offsets, method=method, max_iterations=1, errors="raise")
 
 
 def test_the_result_is_a_sequence_that_pickles():
@@ -174,7 +178,9 @@ def long_collection():
 def test_other_threads_run_meanwhile():
     points, offsets = long_collection()
     # The curves themselves are made under the lock, after all have been fitted.
-    assert threads.share_stood_still(lambda: ss.fit_many(points, offsets, "catmull-rom")) < 0.6
+    assert (
+        threads.share_stood_still(lambda: ss.fit_many(points, offsets, method="catmull-rom")) < 0.6
+    )
 
 
 @pytest.mark.skipif(os.name != "posix", reason="signals to the own process")
@@ -197,5 +203,5 @@ def test_ctrl_c_ends_it(order):
     timer = threading.Timer(0.5, press)
     timer.start()
     with pytest.raises(KeyboardInterrupt):
-        ss.fit_many(points, offsets, strategy="nussp", step=1e-6, max_iterations=10**9)
+        ss.fit_many(points, offsets, method="nu", strategy="nussp", step=1e-6, max_iterations=10**9)
     assert time.perf_counter() - pressed[0] < 1

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from scipy.interpolate import BSpline, CubicSpline, PPoly, make_interp_spline
 
+import cases
 import polygons
 import shapespline as ss
 from shapespline import _files
@@ -273,7 +274,7 @@ def test_degenerate_points_make_a_report(points):
 # Our other families
 
 
-@pytest.mark.parametrize("family", [ss.TensionSpline, ss.CatmullRom])
+@pytest.mark.parametrize("family", [ss.TensionSpline, ss.CatmullRom, ss.FairSpline])
 def test_our_other_families(family, tmp_path):
     points = polygons.load_points("protein_1a8o_ca")
     curve = family(points)
@@ -290,7 +291,7 @@ def test_our_other_families(family, tmp_path):
     )
     assert found.counts() == own.counts()
     text = (tmp_path / "c.json").read_text(encoding="utf-8")
-    assert ('"tension"' if family is ss.TensionSpline else '"catmull-rom"') in text
+    assert f'"{cases.METHODS[family]}"' in text
 
 
 def test_a_tension_spline_is_judged_at_its_points_only():

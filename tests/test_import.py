@@ -56,7 +56,7 @@ report: ss.ShapeReport = curve.check("convexity")
 for record in report.segments:
     margin: float = record.margin
 violated, applicable = report.counts()["convexity"]
-fits = ss.fit_many(points, [0, 3], "tension")
+fits = ss.fit_many(points, [0, 3], method="tension")
 reveal_type(fits[0])
 f = ss.MonotoneQuintic([0, 1, 2], [0, 1, 3], slopes="fritsch-butland")
 slope = f.derivative()(0.5)

@@ -23,7 +23,8 @@ def same(a, b):
     np.testing.assert_array_equal(a.points, b.points)
     np.testing.assert_array_equal(a.parameters, b.parameters)
     np.testing.assert_array_equal(a.tangents, b.tangents)
-    np.testing.assert_array_equal(a.tension, b.tension)
+    np.testing.assert_array_equal(cases.tension_of(a), cases.tension_of(b))
+    np.testing.assert_array_equal(a.knots, b.knots)
     u = np.linspace(a.parameters[0] - 1, a.parameters[-1] + 1, 50)
     for order in range(4):
         np.testing.assert_array_equal(a(u, order), b(u, order))

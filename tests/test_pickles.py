@@ -26,7 +26,7 @@ def public(thing):
     for name in dir(type(thing)):
         if name.startswith("_"):
             continue
-        value = getattr(thing, name)
+        value = getattr(thing, name, None)  # a FairSpline has no tension
         if isinstance(value, (int, float, str, tuple, list, np.ndarray)):
             found[name] = repr(value)
     return found

@@ -86,8 +86,9 @@ import shapespline as ss
 for n in (60, 20_000):
     t = np.linspace(0, n / 5, n)
     points = np.column_stack([np.cos(t), np.sin(t), 0.1 * t])
-    for family in (ss.NuSpline, ss.TensionSpline, ss.CatmullRom):
-        curve = family.shape_preserving(points)
+    for fit in (ss.FairSpline, *(family.shape_preserving for family in
+                                 (ss.NuSpline, ss.TensionSpline, ss.CatmullRom))):
+        curve = fit(points)
         curve(t), curve.curvature(t), curve.arc_length(), curve.sample(n, by="arc-length")
         curve.check().segments, curve.check().nodes
     ss.check_shape(points, curve.to_bspline(), parameters=curve.parameters)

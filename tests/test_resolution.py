@@ -82,7 +82,7 @@ def test_fits_keep_what_is_known(family, dim, rng, tmp_path):
     for end in ("natural", "circular", "periodic"):
         smooth = polygons.random_walk(rng, 30, dim)
         options = {"closed": True} if end == "periodic" else {"boundary": end}
-        curve = family.shape_preserving(smooth, resolution=0.1, **options)
+        curve = cases.preserving(family)(smooth, resolution=0.1, **options)
         report = curve.check()
         assert report.ok
         assert report.to_dict()["resolution"] == 0.1
@@ -104,7 +104,7 @@ def test_noise_below_the_resolution_costs_no_tension(family, rng):
     line = np.outer(t, [1.0, 2, 3])
     for smooth in (line, helix):
         noisy = smooth + rng.uniform(-1, 1, smooth.shape) * 1e-3
-        plain, known = (family.shape_preserving(noisy, resolution=r) for r in (0.0, 2e-3))
+        plain, known = (cases.preserving(family)(noisy, resolution=r) for r in (0.0, 2e-3))
         assert known.check().ok
         assert known.fairness().max_curvature <= plain.fairness().max_curvature * (1 + 1e-9)
     # Nothing is asked of the line: no tension.
@@ -116,7 +116,7 @@ def test_resolutions_out_of_range(value):
     points = [[0.0, 0], [1, 1], [2, 0]]
     curve = ss.NuSpline(points)
     calls = [
-        *(lambda f=f: f.shape_preserving(points, resolution=value) for f in cases.FAMILIES),
+        *(lambda f=f: cases.preserving(f)(points, resolution=value) for f in cases.FAMILIES),
         lambda: curve.check(resolution=value),
         lambda: ss.check_shape(points, curve, resolution=value),
         lambda: ss.polygon_shape(points, resolution=value),

@@ -10,6 +10,7 @@ POINTS = np.array([[0, 0, 0], [4, 0, 0], [4.5, 0.5, 0], [4.5, 1, 0.5], [4.5, 1, 
 def everything() -> list[object]:
     """Return one object of every class that is made of curves, checks and functions."""
     x, y = np.arange(9.0), np.arange(9.0) ** 2
+    fair = ss.FairSpline([[0, 1], [1, 0], [2, 0], [3, 0.01], [4, 0.03], [5, 1]])
     nu = ss.NuSpline.shape_preserving(POINTS, "uniform")
     plane = ss.NuSpline.shape_preserving([[0, 0], [1, 1], [2, 0], [3, 1]])
     f = ss.MonotoneQuintic(x, y)
@@ -17,6 +18,9 @@ def everything() -> list[object]:
     report = nu.check()
     foreign = ss.check_shape(POINTS, nu.to_bspline(), parameters=nu.parameters)
     return [
+        fair,
+        fair.diagnostics,
+        fair.history[0],
         nu,
         ss.TensionSpline(POINTS),
         ss.CatmullRom(POINTS),

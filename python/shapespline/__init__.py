@@ -2,7 +2,7 @@
 
 >>> import shapespline as ss
 >>> points = [[0, 0, 0], [4, 0, 0], [4.5, 0.5, 0], [4.5, 1, 0.5], [4.5, 1, 5]]
->>> curve = ss.NuSpline.shape_preserving(points, "uniform")
+>>> curve = ss.fit(points)
 >>> curve.check().ok
 True
 >>> curve([0.0, 4.0]).shape
@@ -13,7 +13,10 @@ from shapespline import interchange, plot
 from shapespline._core import (
     CatmullRom,
     Diagnostics,
+    FairDiagnostics,
     Fairness,
+    FairSpline,
+    FairStep,
     MonotoneDiagnostics,
     MonotoneQuartic,
     MonotoneQuintic,
@@ -38,11 +41,15 @@ from shapespline._many import Fits, fit_many
 from shapespline._polygon import PolygonShape, polygon_shape
 from shapespline._records import NodeRecord, OscillationRecord, UndecidedRecord
 from shapespline._shape import InflectionCount, check_shape, fairness, inflection_count
+from shapespline._verbs import fit
 
 __all__ = [
     "CatmullRom",
     "ConvergenceError",
     "Diagnostics",
+    "FairDiagnostics",
+    "FairSpline",
+    "FairStep",
     "Fairness",
     "Fits",
     "InflectionCount",
@@ -70,6 +77,7 @@ __all__ = [
     "bezier_like",
     "check_shape",
     "fairness",
+    "fit",
     "fit_many",
     "fit_many_monotone",
     "inflection_count",

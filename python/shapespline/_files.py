@@ -14,17 +14,16 @@ from typing import TYPE_CHECKING, Any, NoReturn
 
 import numpy as np
 
+from shapespline import _methods
 from shapespline._convert import piecewise
 from shapespline._core import (
-    CatmullRom,
+    FairSpline,
     MonotoneQuartic,
     MonotoneQuintic,
     MonotoneSpline,
-    NuSpline,
     PiecewiseBezier,
     SpaceCurve,
     Tangents,
-    TensionSpline,
 )
 from shapespline._errors import InputError
 from shapespline._io import FileError, shortened, text_of, write
@@ -42,9 +41,7 @@ FORMAT = "shapespline-curve"
 VERSION = 1
 #: Names of the families, as the command line has them.
 METHODS: dict[type, str] = {
-    NuSpline: "nu",
-    TensionSpline: "tension",
-    CatmullRom: "catmull-rom",
+    **{method.family: name for name, method in _methods.METHODS.items()},
     MonotoneQuartic: "quartic",
     MonotoneQuintic: "quintic",
 }
@@ -239,7 +236,8 @@ def write_curve(path: Path, curve: Any) -> None:
             if isinstance(ends, Tangents)
             else ends
         )
-        entries["tension"] = curve.tension.tolist()
+        if not isinstance(curve, FairSpline):
+            entries["tension"] = curve.tension.tolist()
         if (options := curve._fit_options()) is not None:
             entries["fit_options"] = options
     elif isinstance(curve, MonotoneSpline):

@@ -14,19 +14,17 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from shapespline import (
-    CatmullRom,
     ConvergenceError,
     InputError,
     MonotoneQuartic,
     MonotoneQuintic,
-    NuSpline,
     Tangents,
-    TensionSpline,
     interchange,
 )
 from shapespline._convert import piecewise
 from shapespline._files import write_curve
 from shapespline._io import STREAM, FileError, UsageError, name_of, refuse_overwriting, write
+from shapespline._methods import METHODS
 from shapespline._monotone_check import check_monotone
 from shapespline._progress import progress
 from shapespline._tables import read_function, read_points, unit_of, write_table
@@ -41,18 +39,18 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-__all__ = ["METHODS", "located", "run"]
+__all__ = ["OPTIONS", "located", "run"]
 
 _CHECK = ("criteria", "resolution", "coplanarity", "collinearity", "tolerance")
-_CURVE = ("parameters", "boundary", "closed", "repeated", "start_tangent", "end_tangent", *_CHECK)
-_SEARCH = ("strategy", "step", "max_iterations")
-#: name → class, and the options that the method has.
-METHODS: dict[str, tuple[Any, tuple[str, ...]]] = {
-    "nu": (NuSpline, (*_CURVE, *_SEARCH, "tension")),
-    "tension": (TensionSpline, (*_CURVE, *_SEARCH, "tangent_scale")),
-    "catmull-rom": (CatmullRom, (*_CURVE, "safety", "continuity", "tension")),
+_CURVE = ("parameters", "boundary", "closed", "repeated", "start_tangent", "end_tangent")
+_FUNCTIONS: dict[str, tuple[Any, tuple[str, ...]]] = {
     "quartic": (MonotoneQuartic, ("shape", "tolerance")),
     "quintic": (MonotoneQuintic, ("slopes", "fairness", "tolerance")),
+}
+#: Options of every method, the default method first.
+OPTIONS: dict[str, tuple[str, ...]] = {
+    **{name: (*_CURVE, *method.all_options) for name, method in METHODS.items()},
+    **{name: options for name, (_, options) in _FUNCTIONS.items()},
 }
 #: Names of given tension: with one of them there is no search.
 _GIVEN = ("tension", "tangent_scale")
@@ -66,17 +64,22 @@ _FIGURES = (".png", ".svg", ".pdf")
 # Options
 
 
+def _flag(name: str) -> str:
+    return f"--{name.replace('_', '-')}"
+
+
 def _given(options: argparse.Namespace) -> dict[str, Any]:
     """Return the method's options that the user gave."""
-    _, known = METHODS[options.method]
-    names = dict.fromkeys(name for _, has in METHODS.values() for name in has)
+    known = OPTIONS[options.method]
+    names = dict.fromkeys(name for has in OPTIONS.values() for name in has)
     given = {name: getattr(options, name) for name in names if getattr(options, name) is not None}
     for name in given:
         if name not in known:
-            flags = ", ".join(f"--{option.replace('_', '-')}" for option in known)
+            having = [method for method, has in OPTIONS.items() if name in has]
             raise UsageError(
-                f"--{name.replace('_', '-')} is no option of method {options.method}; "
-                f"its options are {flags}"
+                f"{_flag(name)} is no option of method {options.method}; "
+                f"its options are {', '.join(map(_flag, known))}; "
+                f"methods that have it: {', '.join(having)}"
             )
     return given
 
@@ -104,28 +107,29 @@ class _Fit:
     failure: str | None = None
 
 
-def _fit_curve(method: str, data: Points, given: dict[str, Any]) -> _Fit:
-    family, _ = METHODS[method]
+def _fit_curve(name: str, data: Points, given: dict[str, Any]) -> _Fit:
+    method = METHODS[name]
     given = _ends(dict(given))
     if data.parameters is not None:
         given.setdefault("parameters", data.parameters)
-    check = {name: given[name] for name in _CHECK if name in given}
-    if any(name in given for name in _GIVEN):
-        plain = {name: value for name, value in given.items() if name not in _CHECK}
-        for name in (*_SEARCH, "safety"):
-            if name in plain:
-                raise UsageError(f"--{name.replace('_', '-')} is for a search, not given tension")
+    check = {option: given[option] for option in _CHECK if option in given}
+    if any(option in given for option in _GIVEN):
+        plain = {option: value for option, value in given.items() if option not in _CHECK}
+        for option in plain:
+            if option in method.options and option not in method.given:
+                raise UsageError(f"{_flag(option)} is for a search, not given tension")
+        family: Any = method.family
         curve = family(data.points, **plain)
         return _Fit(curve, curve.check(**check))
     try:
-        curve = family.shape_preserving(data.points, **given)
+        curve = method.fit(data.points, **given)
     except ConvergenceError as error:
         return _Fit(error.curve, error.report, str(error))
     return _Fit(curve, curve.check(**check))
 
 
-def _fit_function(method: str, data: Points, given: dict[str, Any]) -> _Fit:
-    family, _ = METHODS[method]
+def _fit_function(name: str, data: Points, given: dict[str, Any]) -> _Fit:
+    family, _ = _FUNCTIONS[name]
     tolerance = given.pop("tolerance", 1e-9)
     function = family(*data.points.T, **given)
     report = check_monotone(data.points, piecewise(function), tolerance=tolerance)
@@ -133,7 +137,7 @@ def _fit_function(method: str, data: Points, given: dict[str, Any]) -> _Fit:
 
 
 def _is_function(method: str) -> bool:
-    return method in ("quartic", "quintic")
+    return method in _FUNCTIONS
 
 
 def located(data: Points, error: InputError) -> Exception:

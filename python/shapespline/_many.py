@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal, overload
 
 from shapespline._core import _fit_many
 from shapespline._errors import InputError
+from shapespline._methods import METHODS, given_options, method_of
 from shapespline._pickling import sealed
 
 if TYPE_CHECKING:
@@ -21,36 +22,14 @@ if TYPE_CHECKING:
         _Boundary,
         _Continuity,
         _Criterion,
+        _Energy,
         _Parametrization,
         _Strategy,
     )
 
-# What each option is where nobody says, and which methods have it. ``step`` has a default for
-# each strategy, which the compiled part knows.
-_SEARCH = {
-    "criteria": None,
-    "resolution": 0.0,
-    "coplanarity": 0.2,
-    "collinearity": 0.2,
-    "tolerance": 1e-9,
-}
-_TENSION_SEARCH = {**_SEARCH, "strategy": "fairest", "step": None, "max_iterations": None}
-_PRESERVING: dict[str, dict[str, Any]] = {
-    "nu": _TENSION_SEARCH,
-    "tension": _TENSION_SEARCH,
-    "catmull-rom": {**_SEARCH, "safety": 0.9, "continuity": "C1"},
-}
-_GIVEN: dict[str, dict[str, Any]] = {
-    "nu": {"tension": 0.0},
-    "tension": {"tangent_scale": 1.0},
-    "catmull-rom": {"tension": 0.0, "continuity": "C1"},
-}
-_PARAMETERS = {"catmull-rom": "centripetal"}
+# Every option that some method has: the compiled part takes them all.
 _ALL = {
-    **_TENSION_SEARCH,
-    **_PRESERVING["catmull-rom"],
-    **_GIVEN["nu"],
-    **_GIVEN["tension"],
+    name: default for method in METHODS.values() for name, default in method.all_options.items()
 }
 
 
@@ -125,9 +104,9 @@ class Fits(Sequence["SpaceCurve | None"]):
 def fit_many(
     points: ArrayLike,
     offsets: ArrayLike,
-    method: Literal["nu", "tension", "catmull-rom"] = "nu",
-    parameters: _Parametrization | float | ArrayLike | None = None,
     *,
+    method: Literal["fair", "nu", "tension", "catmull-rom"] = "fair",
+    parameters: _Parametrization | float | ArrayLike | None = None,
     shape_preserving: bool = True,
     boundary: _Boundary | Tangents | None = None,
     closed: bool = False,
@@ -142,6 +121,7 @@ def fit_many(
     collinearity: float | None = None,
     tolerance: float | None = None,
     max_iterations: int | None = None,
+    energy: _Energy | None = None,
     safety: float | None = None,
     continuity: _Continuity | None = None,
     tension: float | None = None,
@@ -155,12 +135,13 @@ def fit_many(
         The points of all curves, one curve after the other.
     offsets : array_like of int, shape (curves + 1,)
         Curve k goes through ``points[offsets[k]:offsets[k + 1]]``: from 0, never falling, to n.
-    method : {"nu", "tension", "catmull-rom"}
-        `NuSpline`, `TensionSpline` or `CatmullRom`.
+    method : {"fair", "nu", "tension", "catmull-rom"}
+        `FairSpline`, `NuSpline`, `TensionSpline` or `CatmullRom`.
     parameters : {"chordal", "centripetal", "uniform"}, float or array_like, shape (n,), optional
         As for the curves; an array holds those of all curves. Default: that of the class.
     shape_preserving : bool
-        Whether to keep the shape of each curve's points; else tension is given.
+        Whether to keep the shape of each curve's points; else tension is given, which
+        `FairSpline` does not have.
     boundary : {"zero-curvature", "natural", "periodic", "circular"} or Tangents, optional
         The ends of every curve. Default: periodic if ``closed``, else natural.
     closed : bool
@@ -178,8 +159,12 @@ def fit_many(
     threads : int, optional
         Number of threads, at least 1; default one for each processor. Results do not depend on it.
     criteria, resolution, coplanarity, collinearity, tolerance
-        As for ``shape_preserving`` of the class.
-    strategy, step, max_iterations
+        As for `FairSpline`, and for ``shape_preserving`` of the other classes.
+    max_iterations : int, optional
+        As for `FairSpline`, ``NuSpline.shape_preserving`` and ``TensionSpline.shape_preserving``.
+    energy : {"parametric", "bending"}, optional
+        As for `FairSpline`.
+    strategy, step
         As for ``NuSpline.shape_preserving`` and ``TensionSpline.shape_preserving``.
     safety : float, optional
         As for ``CatmullRom.shape_preserving``.
@@ -214,17 +199,20 @@ def fit_many(
     >>> import numpy as np
     >>> import shapespline as ss
     >>> rng = np.random.default_rng(0)
-    >>> lengths = rng.integers(20, 90, size=100)
+    >>> lengths = rng.integers(20, 90, size=10)
     >>> points = rng.normal(size=(lengths.sum(), 3)).cumsum(axis=0)
-    >>> fits = ss.fit_many(points, np.r_[0, lengths.cumsum()], "tension")
+    >>> fits = ss.fit_many(points, np.r_[0, lengths.cumsum()])
     >>> fits.ok, len(fits), all(curve.check().ok for curve in fits)
-    (True, 100, True)
+    (True, 10, True)
     """
     if errors not in ("return", "raise"):
         text = f"errors must be one of 'return', 'raise'; got {errors!r}"
         raise InputError(text, "errors", value=errors)
-    known = (_PRESERVING if shape_preserving else _GIVEN).get(str(method), _ALL)
-    given = {
+    entry = method_of(method)
+    if not (shape_preserving or entry.given):
+        text = f"shape_preserving must be True with method '{method}', which has no tension to give"
+        raise InputError(text, "shape_preserving", value=False)
+    options = {
         "criteria": criteria,
         "strategy": strategy,
         "step": step,
@@ -233,21 +221,18 @@ def fit_many(
         "collinearity": collinearity,
         "tolerance": tolerance,
         "max_iterations": max_iterations,
+        "energy": energy,
         "safety": safety,
         "continuity": continuity,
         "tension": tension,
         "tangent_scale": tangent_scale,
     }
-    given = {name: value for name, value in given.items() if value is not None}
-    for name in given:
-        if name not in known:
-            raise TypeError(
-                f"{name} is no option of method {method!r} with shape_preserving="
-                f"{bool(shape_preserving)}; its options are {', '.join(known)}"
-            )
-    options = {**_ALL, **given}
+    known, where = entry.options, " with shape_preserving=True"
+    if not shape_preserving:
+        known, where = entry.given, " with shape_preserving=False"
+    given = given_options(method, options, known, where)
     if parameters is None:
-        parameters = _PARAMETERS.get(str(method), "chordal")
+        parameters = entry.parameters
     curves, failed = _fit_many(
         points,
         offsets,
@@ -258,7 +243,7 @@ def fit_many(
         repeated,
         bool(shape_preserving),
         threads,
-        **options,
+        **{**_ALL, **given},
     )
     if failed and errors == "raise":
         raise failed[min(failed)]

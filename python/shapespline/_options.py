@@ -111,8 +111,8 @@ def add_fit_options(parser: argparse.ArgumentParser, methods: Iterable[str]) -> 
     parser.add_argument(
         "--method",
         choices=list(methods),
-        default="nu",
-        help="curves: nu, tension, catmull-rom; monotone functions y(x): quartic, quintic "
+        default="fair",
+        help="curves: fair, nu, tension, catmull-rom; monotone functions y(x): quartic, quintic "
         "(default: %(default)s)",
     )
     out = parser.add_argument_group("what to write")
@@ -141,7 +141,7 @@ def add_fit_options(parser: argparse.ArgumentParser, methods: Iterable[str]) -> 
         "--plot", type=Path, metavar="OUT.png", help="a figure: .png, .svg or .pdf, by its ending"
     )
 
-    curve = parser.add_argument_group("curves (nu, tension, catmull-rom)")
+    curve = parser.add_argument_group("curves (fair, nu, tension, catmull-rom)")
     curve.add_argument(
         "--parameters",
         type=_parameters,
@@ -166,8 +166,12 @@ def add_fit_options(parser: argparse.ArgumentParser, methods: Iterable[str]) -> 
         "--criteria", type=names, metavar="NAME,…", help="which criteria to keep and to check"
     )
     for flag, kind, help_text in (
-        ("--step", real, "step of the tension in strategies nussp, growth and reduction"),
-        ("--max-iterations", _integer, "rounds after which the search gives up (exit status 1)"),
+        ("--step", real, "nu, tension: step of the search in strategies nussp, growth, reduction"),
+        (
+            "--max-iterations",
+            _integer,
+            "fair, nu, tension: iterations after which the search gives up (exit status 1)",
+        ),
         ("--safety", real, "catmull-rom: share of the bounds on its handles that is used"),
         ("--tension", real, "nu, catmull-rom: given tension, no search"),
         ("--tangent-scale", real, "tension: given λ in (0, 1], no search"),
@@ -182,7 +186,12 @@ def add_fit_options(parser: argparse.ArgumentParser, methods: Iterable[str]) -> 
     curve.add_argument(
         "--strategy",
         choices=["fairest", "growth", "reduction", "nussp"],
-        help="how tension is searched for (default: fairest)",
+        help="nu, tension: how tension is searched for (default: fairest)",
+    )
+    curve.add_argument(
+        "--energy",
+        choices=["parametric", "bending"],
+        help="fair: what is minimised (default: parametric)",
     )
     curve.add_argument(
         "--continuity", choices=["C1", "G1"], help="catmull-rom: one handle a point, or two"

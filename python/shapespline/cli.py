@@ -87,7 +87,7 @@ def _add_fit(commands: argparse._SubParsersAction[Parser]) -> None:
         epilog="Exit status: 0 when the shape is kept, 1 when it is not, 2 for bad input. Formats "
         "of the files: the page Files of the documentation.",
     )
-    add_fit_options(parser, _fit.METHODS)
+    add_fit_options(parser, _fit.OPTIONS)
     parser.set_defaults(run=_fit.run)
 
 

@@ -148,7 +148,7 @@ def collections() -> Iterator[Line]:
 
         methods = ("nu", "tension", "catmull-rom")
         *ours, theirs = best(
-            *(lambda m=m, p=points: ss.fit_many(p, offsets, m) for m in methods), loop
+            *(lambda m=m, p=points: ss.fit_many(p, offsets, method=m) for m in methods), loop
         )
         for method, time_taken in zip(methods, ours, strict=True):
             yield faster(f"fit_many, {method}, 300 {name}", time_taken, theirs, 20.0)

@@ -86,6 +86,11 @@ impl Chain {
         chain
     }
 
+    /// Whether the last segment ends at the first node.
+    pub(crate) fn is_ring(&self) -> bool {
+        self.segments.len() == self.nodes.len()
+    }
+
     /// The nodes at the ends of a segment.
     pub(crate) fn ends(&self, k: usize) -> [usize; 2] {
         [k, if k + 1 == self.nodes.len() { 0 } else { k + 1 }]

@@ -5,7 +5,7 @@ use shapespline_criteria::Criterion;
 use shapespline_geometry::DVec3;
 
 use crate::{
-    Energy, FairOptions, Method,
+    Energy, FairOptions, Method, Phase,
     chain::Chain,
     control::Control,
     cubic::plain_cubic,
@@ -13,7 +13,9 @@ use crate::{
     export::Pieces,
     rows::Rules,
     segment::Demands,
-    solve::{LAST, finish, finish_bending, finish_parametric, restart_all, solve},
+    solve::{
+        LAST, finish, finish_bending, finish_parametric, improve, replace, restart_all, solve,
+    },
     window::{BESIDE, Window, windows},
 };
 
@@ -99,12 +101,13 @@ impl Found {
                     continue;
                 };
                 finish_parametric(demands, &mut chain, &plain, control);
-                let open = certify(demands, &mut chain, control);
+                let mut open = certify(demands, &mut chain, control);
                 if !open.is_empty() && !whole {
                     unsolved.extend(own());
                     continue;
                 }
-                self.put(&chain, method);
+                let last = fall_back(demands, &mut chain, &mut open, control);
+                self.put(&chain, last.unwrap_or(method));
                 self.open.retain(|&k| !window.touches(k, count));
                 self.open.extend(open);
             }
@@ -128,7 +131,8 @@ impl Found {
         }
         finish_bending(&mut chain, control);
         self.open = certify(demands, &mut chain, control);
-        self.put(&chain, method);
+        let last = fall_back(demands, &mut chain, &mut self.open, control);
+        self.put(&chain, last.unwrap_or(method));
     }
 
     /// Takes over what a chain has found.
@@ -159,27 +163,57 @@ fn ends_of(demands: &Demands<'_>, i: usize) -> [DVec3; 2] {
 }
 
 /// The exact check of what a chain will export. Where it does not prove everything, the barrier is
-/// raised, which widens the margins; at last the closed-form start is taken. Returns what stays open.
+/// raised, which widens the margins. Returns what stays open.
 fn certify(demands: &Demands<'_>, chain: &mut Chain, control: &mut Control<'_>) -> Vec<usize> {
     let mut open = unproved(demands, chain);
     for weight in [10.0, 100.0, 1000.0].map(|factor| factor * LAST) {
         if open.is_empty() || control.is_over() || !chain.all_hold() {
-            return open;
+            break;
         }
         finish(chain, weight, control);
         open = unproved(demands, chain);
     }
-    if !open.is_empty() {
-        let nodes = chain.nodes.clone();
-        restart_all(demands, chain);
-        let again = unproved(demands, chain);
-        if again.len() < open.len() {
-            return again;
-        }
-        chain.nodes = nodes;
-        chain.choose_changes();
-    }
     open
+}
+
+/// The last rungs, for the whole curve: nodes that fail are put where the closed-form start has them, and
+/// improved from there; or all are; or all stay there. Keeps the first that leaves least open.
+fn fall_back(
+    demands: &Demands<'_>,
+    chain: &mut Chain,
+    open: &mut Vec<usize>,
+    control: &mut Control<'_>,
+) -> Option<Method> {
+    let mut best = None;
+    for (method, all) in [(Method::Sweeps, false), (Method::Sweeps, true), (Method::Start, true)] {
+        if open.is_empty() || control.is_over() {
+            break;
+        }
+        let before = (chain.nodes.clone(), chain.segments.clone());
+        if all {
+            restart_all(demands, chain);
+        } else {
+            replace(demands, chain);
+        }
+        if method == Method::Sweeps {
+            control.begin(Phase::Improve, open.len());
+            for weight in [1.0, 0.1, 0.01] {
+                improve(chain, weight, control);
+            }
+        }
+        let left = if method == Method::Sweeps {
+            certify(demands, chain, control)
+        } else {
+            unproved(demands, chain)
+        };
+        if left.len() < open.len() {
+            (*open, best) = (left, Some(method));
+        } else {
+            (chain.nodes, chain.segments) = before;
+            chain.choose_changes();
+        }
+    }
+    best
 }
 
 /// The segments of a chain of which the exact check does not prove everything.

@@ -9,7 +9,8 @@
 //! least parametric energy *is* the plain cubic.
 //!
 //! **Guarantee.** A fit that ends with [`Status::Solved`] has passed the exact check of its exported
-//! control points: every criterion is proved on every piece.
+//! control points: every criterion is proved on every piece, but for signs that rounding hides in
+//! nearly degenerate data, which the report lists as undecided.
 //!
 //! **How it is found.** Every criterion is a polynomial inequality in the derivatives at the two ends of
 //! a segment, so gradients and Hessians are written out, and Newton's system is block tridiagonal: a step

@@ -29,16 +29,38 @@ const PADS: usize = 4;
 /// Nodes beside a restart that may move until it settles.
 const MARGIN: usize = 6;
 
-/// Segments in runs: the nodes at them, with some more on both sides.
+/// Segments in runs: the nodes at them, with some more on both sides. In a ring a run may go on beyond
+/// the last node, and begins below it.
 fn clusters(chain: &Chain, segments: &[usize], pad: usize) -> Vec<Range<usize>> {
     let mut runs: Vec<Range<usize>> = Vec::new();
-    let last = chain.nodes.len();
+    let count = chain.nodes.len();
+    let ring = chain.is_ring();
     for &k in segments {
-        let nodes = k.saturating_sub(pad)..(k + 2 + pad).min(last);
+        let nodes = if ring {
+            k + count - pad.min(count)..k + count + 2 + pad
+        } else {
+            k.saturating_sub(pad)..(k + 2 + pad).min(count)
+        };
         match runs.last_mut() {
             Some(run) if nodes.start <= run.end => run.end = nodes.end,
             _ => runs.push(nodes),
         }
+    }
+    if !ring {
+        return runs;
+    }
+    if let [first, .., last] = runs.as_mut_slice()
+        && last.end >= first.start + count
+    {
+        last.end = last.end.max(first.end + count);
+        runs.remove(0);
+    }
+    for run in &mut runs {
+        *run = if run.len() >= count {
+            0..count
+        } else {
+            run.start % count..run.start % count + run.len()
+        };
     }
     runs
 }
@@ -48,7 +70,7 @@ pub(crate) fn mend(demands: &Demands<'_>, chain: &mut Chain, control: &mut Contr
     for pad in 0..PADS {
         for nodes in clusters(chain, &chain.failing(), pad) {
             if let Some((_, part)) = best_restart(demands, chain, &nodes, control) {
-                put(chain, &part);
+                put(demands, chain, &part);
             }
         }
         if chain.all_hold() || control.is_over() {
@@ -66,10 +88,10 @@ pub(crate) fn refresh(
 ) {
     for pad in 0..2 {
         for nodes in clusters(chain, segments, pad) {
-            let (value, part) = settle(chain, &part(chain, nodes.clone()), control);
+            let (value, part) = settle(demands, chain, &part(chain, nodes.clone()), control);
             let best = best_restart(demands, chain, &nodes, control);
             let best = best.filter(|best| best.1.all_hold() && best.0 < value);
-            put(chain, best.as_ref().map_or(&part, |best| &best.1));
+            put(demands, chain, best.as_ref().map_or(&part, |best| &best.1));
         }
     }
 }
@@ -90,7 +112,7 @@ fn best_restart(
         if !part.all_hold() {
             continue;
         }
-        let (value, settled) = settle(chain, &part, control);
+        let (value, settled) = settle(demands, chain, &part, control);
         if best.as_ref().is_none_or(|best| value < best.0) {
             best = Some((value, settled));
         }
@@ -99,26 +121,50 @@ fn best_restart(
 }
 
 /// Puts a part back into the chain that it was taken from.
-fn put(chain: &mut Chain, part: &Chain) {
-    let at = part.first - chain.first;
-    let inside = at..at + part.nodes.len();
-    chain.nodes[inside].copy_from_slice(&part.nodes);
-    for (own, other) in chain.segments[at..].iter_mut().zip(&part.segments) {
-        own.speed = other.speed;
+fn put(demands: &Demands<'_>, chain: &mut Chain, part: &Chain) {
+    let at = begin(demands, chain, part);
+    let (nodes, segments) = (chain.nodes.len(), chain.segments.len());
+    for (j, node) in part.nodes.iter().enumerate() {
+        chain.nodes[(at + j) % nodes] = *node;
+    }
+    for (k, other) in part.segments.iter().enumerate() {
+        chain.segments[(at + k) % segments].speed = other.speed;
     }
     chain.choose_changes();
 }
 
-/// The part of a chain around some nodes, which may move.
+/// Where in a chain a part of it begins.
+fn begin(demands: &Demands<'_>, chain: &Chain, part: &Chain) -> usize {
+    let total = demands.checker.polygon().nodes();
+    (part.first % total + total - chain.first % total) % total
+}
+
+/// The part of a chain around some nodes, which may move. In a ring they may go on beyond the last.
 fn part(chain: &Chain, nodes: Range<usize>) -> Chain {
-    let from = nodes.start.saturating_sub(1);
-    let to = (nodes.end + 1).min(chain.nodes.len());
+    let count = chain.nodes.len();
+    let (from, to) = if !chain.is_ring() {
+        (nodes.start.saturating_sub(1), (nodes.end + 1).min(count))
+    } else if nodes.len() + 2 <= count {
+        (nodes.start + count - 1, nodes.end + count + 1)
+    } else {
+        (0, count)
+    };
+    // Without a held node on each side the part of a ring is the ring.
+    let ring = chain.is_ring() && to - from == count && nodes.len() + 2 > count;
+    let is_inside = |i: usize| {
+        if chain.is_ring() {
+            (i + count - nodes.start % count) % count < nodes.len()
+        } else {
+            nodes.contains(&i)
+        }
+    };
     let freedom = (from..to)
-        .map(|i| if nodes.contains(&i) { chain.freedom[i] } else { Freedom::Held })
+        .map(|i| if is_inside(i % count) { chain.freedom[i % count] } else { Freedom::Held })
         .collect();
-    let segments = chain.segments[from..to - 1].to_vec();
-    let nodes = chain.nodes[from..to].to_vec();
-    Chain::new(segments, nodes, freedom, chain.first + from, chain.rules)
+    let last = if ring { to } else { to - 1 };
+    let segments = (from..last).map(|k| chain.segments[k % count].clone()).collect();
+    let parts = (from..to).map(|i| chain.nodes[i % count]).collect();
+    Chain::new(segments, parts, freedom, chain.first + from, chain.rules)
 }
 
 fn restart(demands: &Demands<'_>, chain: &Chain, nodes: Range<usize>, scales: Scales) -> Chain {
@@ -141,13 +187,31 @@ pub(crate) fn set_start(demands: &Demands<'_>, chain: &mut Chain, j: usize, scal
     }
 }
 
+/// Makes a given tangent no longer than the handle of the closed-form start.
+pub(crate) fn shorten(demands: &Demands<'_>, chain: &mut Chain, j: usize, scales: Scales) {
+    let total = demands.checker.polygon().nodes();
+    let handle = start(demands, (chain.first + j) % total, scales).q.length();
+    let tangent = &mut chain.nodes[j].q;
+    *tangent *= (handle / tangent.length()).min(1.0);
+}
+
 /// Lets a mended part and its surroundings settle: what is minimised there, and the nodes.
-fn settle(chain: &Chain, mended: &Chain, control: &mut Control<'_>) -> (f64, Chain) {
-    let at = mended.first - chain.first;
-    let from = at.saturating_sub(MARGIN);
-    let to = (at + mended.nodes.len() + MARGIN).min(chain.nodes.len());
-    let mut part = part(chain, from..to);
-    put(&mut part, mended);
+fn settle(
+    demands: &Demands<'_>,
+    chain: &Chain,
+    mended: &Chain,
+    control: &mut Control<'_>,
+) -> (f64, Chain) {
+    let (at, count) = (begin(demands, chain, mended), chain.nodes.len());
+    let nodes = if chain.is_ring() {
+        let length = mended.nodes.len() + 2 * MARGIN;
+        let start = (at + count - MARGIN % count) % count;
+        if length >= count { 0..count } else { start..start + length }
+    } else {
+        at.saturating_sub(MARGIN)..(at + mended.nodes.len() + MARGIN).min(count)
+    };
+    let mut part = part(chain, nodes);
+    put(demands, &mut part, mended);
     for (weight, decrement) in [(0.1, 1e-2), (0.01, 1e-3)] {
         // Other clusters nearby may still fail.
         let penalty = if part.all_hold() { None } else { Some(10.0) };

@@ -22,9 +22,10 @@ pub enum FitError {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum Status {
-    /// Every criterion is proved on the exported control points.
+    /// No criterion is violated on the exported control points. All are proved but those that the report
+    /// lists as undecided: no rung of the ladder has a curve on which rounding does not hide them.
     Solved,
-    /// Some criterion is violated, or hidden by rounding, and nothing more is to be tried.
+    /// Some criterion is violated, and nothing more is to be tried.
     IterationLimit,
     /// The caller's monitor asked to stop.
     Interrupted,

@@ -3,11 +3,11 @@
 use crate::{
     Energy, Method, Phase,
     barrier::Barrier,
-    chain::Chain,
+    chain::{Chain, Freedom},
     control::Control,
     element::Node,
     energy,
-    mend::{mend, refresh, set_start},
+    mend::{mend, refresh, set_start, shorten},
     newton::Limits,
     segment::Demands,
     start::Scales,
@@ -85,10 +85,16 @@ pub(crate) fn finish_parametric(
             chain.bend(k.saturating_sub(1)..(k + 2).min(chain.segments.len()));
         }
         control.begin(Phase::Restart, slow.len());
+        let before = (chain.nodes.clone(), chain.segments.clone());
         refresh(demands, chain, &slow, control);
         control.begin(Phase::Improve, 0);
         improve(chain, 0.1, control);
         improve(chain, 0.01, control);
+        if !chain.all_hold() {
+            (chain.nodes, chain.segments) = before;
+            chain.choose_changes();
+            break;
+        }
     }
     finish(chain, LAST, control);
 }
@@ -113,7 +119,7 @@ pub(crate) fn finish(chain: &mut Chain, weight: f64, control: &mut Control<'_>) 
 }
 
 /// Newton's steps with the barrier proper.
-fn improve(chain: &mut Chain, weight: f64, control: &mut Control<'_>) {
+pub(crate) fn improve(chain: &mut Chain, weight: f64, control: &mut Control<'_>) {
     chain.set_exact_middles(false);
     let barrier = Barrier { weight, penalty: None, protects: false };
     let limits = Limits { decrement: 0.03 * weight, steps: 100, until_all_hold: false };
@@ -122,7 +128,7 @@ fn improve(chain: &mut Chain, weight: f64, control: &mut Control<'_>) {
 
 /// Puts as many nodes of a chain where the closed-form start has them as it takes for all conditions to
 /// hold.
-fn replace(demands: &Demands<'_>, chain: &mut Chain) {
+pub(crate) fn replace(demands: &Demands<'_>, chain: &mut Chain) {
     let before = chain.nodes.clone();
     restart_all(demands, chain);
     let closed = std::mem::replace(&mut chain.nodes, before);
@@ -143,20 +149,31 @@ fn replace(demands: &Demands<'_>, chain: &mut Chain) {
     chain.relax_speeds();
 }
 
-/// Puts all nodes of a chain where the closed-form start has them, with handles as long as hold.
+/// Puts all nodes of a chain where the closed-form start has them, with handles as long as hold. Given
+/// tangents keep their length where that is possible, and else are as short as the handles.
 pub(crate) fn restart_all(demands: &Demands<'_>, chain: &mut Chain) {
+    chain.ask_no_speed();
+    if !start_all(demands, chain, false) && chain.freedom.contains(&Freedom::TangentHeld) {
+        start_all(demands, chain, true);
+    }
+}
+
+/// As [`restart_all`], with given tangents shortened or not. Whether all conditions hold.
+fn start_all(demands: &Demands<'_>, chain: &mut Chain, shortens: bool) -> bool {
     let natural = Scales { tilt: 1.0, handle: 1.0, curvature: 0.3 };
     let mut scales = vec![natural; chain.nodes.len()];
-    chain.ask_no_speed();
     // A handle of 1e−13 of its natural length is the last that is tried.
     for _ in 0..60 {
         for (j, &scales) in scales.iter().enumerate() {
             set_start(demands, chain, j, scales);
+            if shortens && chain.freedom[j] == Freedom::TangentHeld {
+                shorten(demands, chain, j, scales);
+            }
         }
         chain.choose_changes();
         let mut shrink: Vec<usize> = chain.failing().iter().flat_map(|&k| chain.ends(k)).collect();
         if shrink.is_empty() {
-            break;
+            return true;
         }
         shrink.sort_unstable();
         shrink.dedup();
@@ -165,6 +182,7 @@ pub(crate) fn restart_all(demands: &Demands<'_>, chain: &mut Chain) {
             scales[j].curvature *= 0.8;
         }
     }
+    false
 }
 
 /// Whether a segment nearly stops, and bends more for it than the plain cubic.

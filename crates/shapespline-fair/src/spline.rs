@@ -101,7 +101,9 @@ impl FairSpline {
         let boundary = polygon.boundary();
         let curve = Self { curve, nodes, boundary, energy: options.energy };
         let report = curve.check(options.criteria, options.tolerances)?;
-        let status = match (control.is_interrupted(), report.ok() && report.undecided.is_empty()) {
+        // What rounding hides in the end could not be widened: the report lists it.
+        let proved = report.undecided.is_empty() || !control.is_over();
+        let status = match (control.is_interrupted(), report.ok() && proved) {
             (true, _) => Status::Interrupted,
             (_, true) => Status::Solved,
             (_, false) => Status::IterationLimit,
@@ -118,7 +120,7 @@ impl FairSpline {
             max_curvature: fairness(&PiecewiseBezier::from(&curve.curve)).max_curvature,
             extra_knots: curve.curve.knots().len() - curve.nodes.len(),
             active: active(&found),
-            tangent_scale: [1.0; 2],
+            tangent_scale: tangent_scale(&polygon, &found),
         };
         Ok(Fit { curve, diagnostics, history: control.history, report })
     }
@@ -223,6 +225,14 @@ fn energy_of(demands: &Demands<'_>, nodes: &[crate::element::Node], energy: Ener
         Energy::Parametric => sum * (length / time) * (length / time) / time,
         Energy::Bending => sum / length,
     }
+}
+
+/// By how much given end tangents were shortened.
+fn tangent_scale(polygon: &DataPolygon, found: &Found) -> [f64; 2] {
+    if polygon.is_closed() || polygon.tangents().is_none() {
+        return [1.0; 2];
+    }
+    [0, found.nodes.len() - 1].map(|j| found.nodes[j].q.length() / found.plain[j].q.length())
 }
 
 /// The criteria that hold the curve back, each with its segments.

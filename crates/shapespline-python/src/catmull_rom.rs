@@ -210,9 +210,14 @@ impl CatmullRom {
             tolerances(resolution, coplanarity, collinearity, tolerance)?,
         );
         let options = HandleOptions { criteria, tolerances, safety, continuity };
-        preserve(class.py(), input, &Request::of_handles(criteria, tolerances), |polygon, go_on| {
-            catmull_rom::CatmullRom::shape_preserving_with(polygon, &options, &mut |_| go_on())
-        })
+        preserve(
+            class.py(),
+            input,
+            &Request::without_strategy(criteria, tolerances),
+            |polygon, go_on| {
+                catmull_rom::CatmullRom::shape_preserving_with(polygon, &options, &mut |_| go_on())
+            },
+        )
     }
 
     /// What is continuous at the points besides the direction: ``"C1"`` or ``"G1"``.

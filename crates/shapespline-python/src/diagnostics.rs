@@ -1,18 +1,29 @@
 //! What a search did, for Python.
 
 use pyo3::{prelude::*, types::PyTuple};
-use shapespline::search::{self, Phase, Status};
+use shapespline::{
+    fair,
+    search::{self, Phase, Status},
+};
 
 use crate::{
     asked::Asked,
     pickle::{self, Kind, Reduced},
 };
 
+/// Diagnostics and history, by what was searched for.
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
+pub(crate) enum Work {
+    /// Tension.
+    Tension(search::Diagnostics, Vec<search::Step>),
+    /// A fair curve.
+    Fair(fair::Diagnostics, Vec<fair::Step>),
+}
+
 /// Diagnostics and history of the search that found a curve.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub(crate) struct Search {
-    pub(crate) diagnostics: search::Diagnostics,
-    pub(crate) history: Vec<search::Step>,
+    pub(crate) work: Work,
     /// What it was asked for: what a check of the curve asks unless told otherwise.
     pub(crate) asked: Asked,
 }

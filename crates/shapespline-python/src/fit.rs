@@ -5,14 +5,15 @@ use std::sync::Arc;
 use pyo3::prelude::*;
 use shapespline::{
     criteria::{self, Criteria, Criterion, Tolerances},
+    fair::{self, FairOptions},
     geometry::{DataPolygon, InputMap, InputPoints, Repeated},
-    search::{Diagnostics, Fit, FitError, Outcome, SearchOptions, Status, Strategy},
+    search::{Fit, FitError, Outcome, SearchOptions, Status, Strategy},
 };
 
 use crate::{
     asked::Asked,
-    curve::{Fitted, Member, SpaceCurve},
-    diagnostics::Search,
+    curve::{Curve, Fitted, Member, SpaceCurve},
+    diagnostics::{Search, Work},
     error::{convergence_error, fit_error},
     input::Points,
     options::{CriteriaNames, Ends, Parameters, tolerances},
@@ -129,8 +130,8 @@ impl From<&SearchOptions> for Request {
 const ASK_FOR_LESS: &str = "widen coplanarity or collinearity, or leave out a criterion";
 
 impl Request {
-    /// Of Catmull–Rom handles.
-    pub(crate) fn of_handles(criteria: Criteria, tolerances: Tolerances) -> Self {
+    /// Of a family whose fits know no strategy.
+    pub(crate) fn without_strategy(criteria: Criteria, tolerances: Tolerances) -> Self {
         Self { asked: Asked::of_fit(criteria, tolerances), advice: ASK_FOR_LESS }
     }
 }
@@ -140,10 +141,73 @@ impl Request {
 pub(crate) struct Made {
     curve: SpaceCurve,
     /// What a search did that did not end well, and the report on its last curve.
-    unsolved: Option<Box<(Diagnostics, criteria::ShapeReport)>>,
+    unsolved: Option<Box<Unsolved>>,
+}
+
+/// What is to be said of a search that did not end well.
+struct Unsolved {
+    iterations: usize,
+    /// Whether more of them might help.
+    limited: bool,
+    report: criteria::ShapeReport,
+}
+
+/// The fair curve of a polygon.
+pub(crate) fn fit_fair(
+    polygon: DataPolygon,
+    map: InputMap,
+    repeated: Repeated,
+    options: &FairOptions,
+    request: &Request,
+    go_on: GoOn<'_>,
+) -> Result<Made, FitError> {
+    let fit = fair::FairSpline::fit_with(polygon, options, &mut |_| go_on());
+    let fit = fit.map_err(|error| match error {
+        fair::FitError::Input(error) => FitError::Input(error),
+        fair::FitError::Solve(error) => FitError::Solve(error),
+    })?;
+    let fair::Fit { curve, diagnostics, history, report } = fit;
+    let iterations = diagnostics.iterations;
+    let limited = options.max_iterations.is_some_and(|most| iterations >= most);
+    let solved = diagnostics.status == fair::Status::Solved;
+    let unsolved = (!solved).then(|| Box::new(Unsolved { iterations, limited, report }));
+    let work = Work::Fair(diagnostics, history);
+    Ok(Made::found(curve, work, request, map, repeated, unsolved))
+}
+
+/// The fair curve, or the exception that carries the last one.
+pub(crate) fn preserve_fair(
+    py: Python<'_>,
+    input: CurveInput,
+    options: &FairOptions,
+    request: &Request,
+) -> PyResult<SpaceCurve> {
+    let (size, repeated) = (input.0.points.len(), input.0.repeated);
+    let fit = |go_on: GoOn<'_>| {
+        input.make(|polygon, map| fit_fair(polygon, map, repeated, options, request, go_on))
+    };
+    let made = interruptible(py, size, fit)?.map_err(fit_error)?;
+    match made.unsolved {
+        None => Ok(made.curve),
+        Some(unsolved) => Err(unsolved.raise(py, made.curve, request, None)?),
+    }
 }
 
 impl Made {
+    /// A curve that was searched for, and how.
+    fn found(
+        curve: impl Curve + 'static,
+        work: Work,
+        request: &Request,
+        map: InputMap,
+        repeated: Repeated,
+        unsolved: Option<Box<Unsolved>>,
+    ) -> Self {
+        let search = Search { work, asked: request.asked };
+        let curve = Arc::new(Fitted::new(curve, map, repeated));
+        Self { curve: SpaceCurve::of(curve, Some(search)), unsolved }
+    }
+
     /// A curve of given tension.
     pub(crate) fn built<C: Member>(curve: C, map: InputMap, repeated: Repeated) -> Self {
         let curve = Arc::new(Fitted::new(curve, map, repeated));
@@ -160,10 +224,11 @@ impl Made {
         let Fit { curve, outcome, report } = fit;
         let Outcome { diagnostics, history, .. } = outcome;
         let solved = diagnostics.status == Status::Solved;
-        let unsolved = (!solved).then(|| Box::new((diagnostics, report)));
-        let search = Search { diagnostics, history, asked: request.asked };
-        let curve = Arc::new(Fitted::new(curve, map, repeated));
-        Self { curve: SpaceCurve::of(curve, Some(search)), unsolved }
+        let limited = diagnostics.status == Status::IterationLimit;
+        let iterations = diagnostics.iterations;
+        let unsolved = (!solved).then(|| Box::new(Unsolved { iterations, limited, report }));
+        let work = Work::Tension(diagnostics, history);
+        Self::found(curve, work, request, map, repeated, unsolved)
     }
 
     /// The object of the family's class, or the exception that carries it: its message begins with the
@@ -174,27 +239,46 @@ impl Made {
         request: &Request,
         index: Option<usize>,
     ) -> PyResult<Py<PyAny>> {
-        let Some(unsolved) = self.unsolved else { return self.curve.into_python(py) };
-        let (Diagnostics { status, iterations, .. }, report) = *unsolved;
+        match self.unsolved {
+            None => self.curve.into_python(py),
+            Some(unsolved) => Err(unsolved.raise(py, self.curve, request, index)?),
+        }
+    }
+}
+
+impl Unsolved {
+    /// The exception that carries the curve.
+    fn raise(
+        self,
+        py: Python<'_>,
+        curve: SpaceCurve,
+        request: &Request,
+        index: Option<usize>,
+    ) -> PyResult<PyErr> {
+        let Self { iterations, limited, report } = self;
         let violations: Vec<String> = Criterion::ALL
             .iter()
             .map(|&criterion| (report.count(criterion).violated, criterion.name()))
             .filter(|(violated, _)| *violated > 0)
             .map(|(violated, name)| format!("{name} on {violated}"))
             .collect();
+        // Rounding may hide a sign where none is wrong.
+        let failing = if violations.is_empty() {
+            format!("{} criteria are undecided", report.undecided.len())
+        } else {
+            format!("{} violate it", violations.join(", "))
+        };
         let whose = index.map_or_else(String::new, |k| format!("curve {k}: "));
         let message = format!(
-            "{whose}the shape is not preserved after {iterations} iterations: of {} segments, {} violate it; \
+            "{whose}the shape is not preserved after {iterations} iterations: of {} segments, {failing}; \
              {} (this exception carries the last curve and its report)",
             report.segments,
-            violations.join(", "),
-            if status == Status::IterationLimit { "raise max_iterations" } else { request.advice },
+            if limited { "raise max_iterations" } else { request.advice },
         );
-        let curve = Arc::clone(&self.curve.curve);
-        let report = curve.with_locations(report);
-        let subject = Subject::Own(curve);
-        let report = ShapeReport::of(report, subject, request.asked);
+        let subject = Arc::clone(&curve.curve);
+        let report = subject.with_locations(report);
+        let report = ShapeReport::of(report, Subject::Own(subject), request.asked);
         let report = Py::new(py, report)?.into_any();
-        Err(convergence_error(py, message, self.curve.into_python(py)?, report))
+        Ok(convergence_error(py, message, curve.into_python(py)?, report))
     }
 }

@@ -1,7 +1,7 @@
 //! The Python face of shapespline: arrays in and out, options by name, errors to exceptions.
 //!
 //! No mathematics lives here. Every space curve is a `SpaceCurve`; a family adds its own
-//! constructors (`NuSpline`, `TensionSpline`, `CatmullRom`). The package `python/shapespline` around this module holds what
+//! constructors (`NuSpline`, `TensionSpline`, `CatmullRom`, `FairSpline`). The package `python/shapespline` around this module holds what
 //! is better written in Python: figures and the command line.
 
 // Doc comments on Python classes are numpydoc docstrings: `points[0]` in them is no link.
@@ -15,6 +15,7 @@ mod catmull_rom;
 mod curve;
 mod diagnostics;
 mod error;
+mod fair;
 mod fairness;
 mod fit;
 mod input;
@@ -44,6 +45,9 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<nu::NuSpline>()?;
     module.add_class::<tension::TensionSpline>()?;
     module.add_class::<catmull_rom::CatmullRom>()?;
+    module.add_class::<fair::FairSpline>()?;
+    module.add_class::<fair::FairDiagnostics>()?;
+    module.add_class::<fair::FairStep>()?;
     module.add_class::<tangents::Tangents>()?;
     module.add_class::<piecewise::PiecewiseBezier>()?;
     module.add_class::<fairness::Fairness>()?;

@@ -11,6 +11,7 @@ use pyo3::{
 };
 use shapespline::{
     catmull_rom::{self, Continuity, HandleOptions},
+    fair::{Energy, FairOptions},
     geometry::{Boundary, DVec3, DataPolygon, InputMap, Parametrization, Ragged, Repeated},
     nu::{self, Strategy},
     search::{Collection, FitError, Tension},
@@ -19,7 +20,7 @@ use shapespline::{
 
 use crate::{
     error::{curve_error, fit_error, input_error},
-    fit::{Made, Request, Searching},
+    fit::{Made, Request, Searching, fit_fair},
     input::{Offsets, Points},
     options::{self, CriteriaNames, Ends, Method, Parameters},
     work::{GoOn, PARALLEL, interruptible, interruptible_each},
@@ -120,6 +121,7 @@ pub(crate) fn _fit_many<'py>(
     #[pyo3(from_py_with = options::continuity)] continuity: Continuity,
     #[pyo3(from_py_with = options::tension)] tension: f64,
     #[pyo3(from_py_with = options::tangent_scale)] tangent_scale: f64,
+    #[pyo3(from_py_with = options::energy)] energy: Energy,
 ) -> PyResult<(Bound<'py, PyTuple>, Bound<'py, PyDict>)> {
     let boundary = boundary.unwrap_or(Ends::Default).of(points.dimension, closed)?;
     let parametrization = parameters.0;
@@ -133,10 +135,14 @@ pub(crate) fn _fit_many<'py>(
     )?;
     let (criteria, tolerances) = (search.criteria, search.tolerances);
     let request = match method {
-        Method::CatmullRom => Request::of_handles(criteria, tolerances),
+        Method::Fair | Method::CatmullRom => Request::without_strategy(criteria, tolerances),
         Method::Nu | Method::Tension => Request::from(&search),
     };
     match method {
+        Method::Fair => run(py, rows, &request, |polygon, map, ask| {
+            let options = FairOptions { criteria, tolerances, energy, max_iterations };
+            fit_fair(polygon, map, repeated, &options, &request, ask)
+        }),
         Method::Nu => run(py, rows, &request, |polygon, map, ask| {
             if !shape_preserving {
                 return nu::NuSpline::new(polygon, Tension::Uniform(tension))

@@ -4,6 +4,7 @@ use pyo3::{exceptions::PyTypeError, prelude::*};
 use shapespline::{
     catmull_rom::Continuity,
     criteria::{Criteria, Criterion, Tolerances},
+    fair::Energy,
     geometry::{Boundary, Dimension, InputError, InputMap, Parametrization, Repeated, Side},
     search::{SearchOptions, Strategy, Tension},
     tension::TensionSpline,
@@ -35,6 +36,18 @@ fn name(argument: &str, object: &Bound<'_, PyAny>) -> PyResult<String> {
     })
 }
 
+const ENERGIES: [(&str, Energy); 2] =
+    [("parametric", Energy::Parametric), ("bending", Energy::Bending)];
+
+pub(crate) fn energy(object: &Bound<'_, PyAny>) -> PyResult<Energy> {
+    choose("energy", &name("energy", object)?, &ENERGIES)
+}
+
+/// The name of an energy.
+pub(crate) fn energy_name(energy: Energy) -> &'static str {
+    ENERGIES.iter().find(|(_, known)| *known == energy).map_or("", |(name, _)| name)
+}
+
 pub(crate) fn side(object: &Bound<'_, PyAny>) -> PyResult<Side> {
     choose("side", &name("side", object)?, &[("left", Side::Left), ("right", Side::Right)])
 }
@@ -59,6 +72,7 @@ pub(crate) fn continuity_name(continuity: Continuity) -> &'static str {
 /// A family by the name that `fit_many` knows it by.
 #[derive(Clone, Copy)]
 pub(crate) enum Method {
+    Fair,
     Nu,
     Tension,
     CatmullRom,
@@ -76,8 +90,12 @@ impl Method {
 }
 
 pub(crate) fn method(object: &Bound<'_, PyAny>) -> PyResult<Method> {
-    let names =
-        [("nu", Method::Nu), ("tension", Method::Tension), ("catmull-rom", Method::CatmullRom)];
+    let names = [
+        ("fair", Method::Fair),
+        ("nu", Method::Nu),
+        ("tension", Method::Tension),
+        ("catmull-rom", Method::CatmullRom),
+    ];
     choose("method", &name("method", object)?, &names)
 }
 

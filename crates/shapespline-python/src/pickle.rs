@@ -7,12 +7,13 @@ use serde::{Serialize, de::DeserializeOwned};
 use shapespline::geometry::{
     self, Boundary, DVec3, DVec4, DataPolygon, Dimension, InputMap, Parametrization, Repeated,
 };
-use shapespline::prelude::{CatmullRom, NuSpline, TensionSpline};
+use shapespline::prelude::{CatmullRom, FairSpline, NuSpline, TensionSpline};
 
 use crate::{
     curve::{Family, Fitted, SpaceCurve},
     diagnostics::{Diagnostics, Search, SearchStep},
     error::{Value, invalid},
+    fair::{FairDiagnostics, FairStep},
     fairness::Fairness,
     monotone::{Fits, Layout, MonotoneDiagnostics, PiecewisePolynomial, PiecewiseRows},
     piecewise::PiecewiseBezier,
@@ -41,10 +42,12 @@ pub(crate) enum Kind {
     SearchStep,
     MonotoneDiagnostics,
     Fairness,
+    FairDiagnostics,
+    FairStep,
 }
 
 impl Kind {
-    const ALL: [(Self, &'static str); 11] = [
+    const ALL: [(Self, &'static str); 13] = [
         (Self::Curve, "a curve"),
         (Self::Report, "a ShapeReport"),
         (Self::PiecewiseBezier, "a PiecewiseBezier"),
@@ -56,6 +59,8 @@ impl Kind {
         (Self::SearchStep, "a SearchStep"),
         (Self::MonotoneDiagnostics, "MonotoneDiagnostics"),
         (Self::Fairness, "Fairness"),
+        (Self::FairDiagnostics, "FairDiagnostics"),
+        (Self::FairStep, "a FairStep"),
     ];
 }
 
@@ -171,6 +176,8 @@ pub(crate) fn _from_bytes<'py>(py: Python<'py>, data: &[u8]) -> PyResult<Bound<'
         Kind::SearchStep => whole::<SearchStep>(bytes)?.into_bound_py_any(py),
         Kind::MonotoneDiagnostics => whole::<MonotoneDiagnostics>(bytes)?.into_bound_py_any(py),
         Kind::Fairness => whole::<Fairness>(bytes)?.into_bound_py_any(py),
+        Kind::FairDiagnostics => whole::<FairDiagnostics>(bytes)?.into_bound_py_any(py),
+        Kind::FairStep => whole::<FairStep>(bytes)?.into_bound_py_any(py),
     }
 }
 
@@ -191,12 +198,13 @@ fn read_curve(bytes: &mut &[u8]) -> PyResult<(Arc<Fitted>, Option<Search>)> {
         Family::Nu => Fitted::new(take::<NuSpline>(bytes)?, map, repeated),
         Family::Tension => Fitted::new(take::<TensionSpline>(bytes)?, map, repeated),
         Family::CatmullRom => Fitted::new(take::<CatmullRom>(bytes)?, map, repeated),
+        Family::Fair => Fitted::new(take::<FairSpline>(bytes)?, map, repeated),
     };
     // What no constructor makes would panic later.
     let points = curve.cubic().points().len();
-    let lengths =
-        [curve.cubic().knots().len(), curve.cubic().segments() + 1, curve.tension().len()];
-    let agree = lengths.iter().all(|&length| length == points) && curve.map.fits(points);
+    let tension = if family == Family::Fair { points } else { curve.tension().len() };
+    let lengths = [curve.cubic().knots().len(), curve.cubic().segments() + 1, tension];
+    let agree = lengths.iter().all(|&length| length == points) && curve.map.fits(curve.count());
     if points < 2 || !agree || !curve.is_sound() {
         return Err(damaged("lengths do not agree"));
     }

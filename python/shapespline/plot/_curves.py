@@ -20,6 +20,12 @@ if TYPE_CHECKING:
 __all__ = ["curvature", "curvature_comb", "curve", "torsion"]
 
 
+def _nodes(c: SpaceCurve) -> Floats:
+    """Return the parameters of the points, but for points that were left out."""
+    nodes: Floats = np.unique(c.parameters)
+    return nodes
+
+
 def _inside(c: SpaceCurve, samples: int) -> Floats:
     """Return parameters in every segment, both ends a hair inside: (segments, samples)."""
     u = c.knots
@@ -50,7 +56,7 @@ def _discrete_curvature(c: SpaceCurve) -> Floats:
 
     It is 2 ‖P‖ / (‖L‖ ‖L'‖ ‖L + L'‖), and NaN too where the polygon turns back on itself.
     """
-    points = c(c.knots)
+    points = c(_nodes(c))
     if c.boundary == "periodic":
         points = np.vstack([points[-2:-1], points, points[1:2]])
     # Over the extent of the points, so that products of their lengths neither over- nor underflow.
@@ -246,7 +252,7 @@ def curvature(
     u = _inside(c, samples)
     if data:
         ax.plot(
-            c.knots,
+            _nodes(c),
             _discrete_curvature(c),
             color=DATA,
             linestyle="",
@@ -316,7 +322,7 @@ def torsion(
         # One artist, however many segments: a bar each would take minutes on a long curve.
         ax.stairs(
             np.nan_to_num(discrete),
-            c.knots,
+            _nodes(c),
             fill=True,
             color=DATA,
             alpha=0.35,

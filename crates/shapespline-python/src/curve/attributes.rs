@@ -1,17 +1,19 @@
 //! What a curve was made of, and how: attributes, and the check of its shape.
 
 use numpy::PyArray1;
-use pyo3::{prelude::*, types::PyDict};
+use pyo3::{IntoPyObjectExt, exceptions::PyAttributeError, prelude::*, types::PyDict};
 use shapespline::{
     criteria::Criterion,
+    fair::{Energy, FairSpline},
     geometry::{Boundary, Dimension, Repeated},
 };
 
-use super::SpaceCurve;
+use super::{Family, SpaceCurve};
 use crate::{
     asked::{Asked, Given},
-    diagnostics::{Diagnostics, SearchStep},
+    diagnostics::{Diagnostics, SearchStep, Work},
     error::input_error,
+    fair::{FairDiagnostics, FairStep},
     options::{self, CriteriaNames},
     output::{FloatArray, vectors},
     report::{ShapeReport, Subject},
@@ -55,7 +57,8 @@ impl SpaceCurve {
     ///        [1., 2.]])
     #[getter]
     fn points<'py>(&self, py: Python<'py>) -> PyResult<FloatArray<'py>> {
-        let points = self.curve.map.points(self.curve.cubic().points());
+        let nodes = self.curve.at_nodes(self.curve.cubic().points());
+        let points = self.curve.map.points(&nodes);
         vectors(py, &points, self.curve.cubic().dimension())
     }
 
@@ -70,12 +73,14 @@ impl SpaceCurve {
     /// array([0., 5., 6.])
     #[getter]
     fn parameters<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        PyArray1::from_vec(py, self.curve.of_points(self.curve.cubic().knots()))
+        let nodes = self.curve.at_nodes(self.curve.cubic().knots());
+        PyArray1::from_vec(py, self.curve.of_points(&nodes))
     }
 
     /// The parameters at which the pieces of the curve meet, strictly increasing; a fresh array.
     ///
-    /// Those of the points, but for points that were left out: one more than ``bezier`` has pieces.
+    /// Those of the points, but for points that were left out, and the extra knots of a `FairSpline`: one
+    /// more than ``bezier`` has pieces.
     ///
     /// Examples
     /// --------
@@ -116,8 +121,11 @@ impl SpaceCurve {
     /// >>> ss.NuSpline([[0, 0], [3, 4], [3, 5]], tension=2).tension
     /// array([2., 2., 2.])
     #[getter]
-    fn tension<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        PyArray1::from_vec(py, self.curve.of_points(self.curve.tension()))
+    fn tension<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        if self.curve.family() == Family::Fair {
+            return Err(PyAttributeError::new_err("a FairSpline has no tension"));
+        }
+        Ok(PyArray1::from_vec(py, self.curve.of_points(self.curve.tension())))
     }
 
     /// The end conditions: ``"zero-curvature"``, ``"periodic"``, ``"circular"`` or a `Tangents`.
@@ -132,8 +140,9 @@ impl SpaceCurve {
         boundary_object(py, self.curve.boundary(), self.curve.cubic().dimension())
     }
 
-    /// What the search for tension took and which points were left out, a `Diagnostics`; ``None`` for a
-    /// curve of given tension, unless it was made with ``repeated="drop"``.
+    /// What the search took and which points were left out, a `Diagnostics`, or a `FairDiagnostics` of a
+    /// `FairSpline`; ``None`` for a curve of given tension, unless it was made with
+    /// ``repeated="drop"``.
     ///
     /// Examples
     /// --------
@@ -141,16 +150,23 @@ impl SpaceCurve {
     /// >>> ss.NuSpline.shape_preserving([[0, 0], [3, 4], [3, 5]]).diagnostics.status
     /// 'solved'
     #[getter]
-    fn diagnostics(&self) -> Option<Diagnostics> {
+    fn diagnostics(&self, py: Python<'_>) -> PyResult<Option<Py<PyAny>>> {
         let dropped = self.curve.map.dropped();
-        match &self.search {
-            Some(search) => Some(Diagnostics::of(&search.diagnostics, dropped)),
-            None => (self.curve.repeated == Repeated::Drop).then(|| Diagnostics::given(dropped)),
+        match self.search.as_ref().map(|search| &search.work) {
+            None if self.curve.repeated == Repeated::Error => return Ok(None),
+            None => Diagnostics::given(dropped).into_py_any(py),
+            Some(Work::Tension(found, _)) => Diagnostics::of(found, dropped).into_py_any(py),
+            Some(Work::Fair(found, _)) => {
+                let curve = self.curve.as_any().downcast_ref::<FairSpline>();
+                let parametric = curve.is_some_and(|c| c.energy() == Energy::Parametric);
+                FairDiagnostics::of(found, &self.curve.map, parametric).into_py_any(py)
+            }
         }
+        .map(Some)
     }
 
-    /// The steps of the search for tension, a list of `SearchStep`; ``None`` for a curve of given
-    /// tension.
+    /// The steps of the search, a list of `SearchStep`, or of `FairStep` of a `FairSpline`; ``None`` for
+    /// a curve of given tension.
     ///
     /// Examples
     /// --------
@@ -160,8 +176,17 @@ impl SpaceCurve {
     /// >>> steps[0].violations, steps[-1].violations
     /// (2, 0)
     #[getter]
-    fn history(&self) -> Option<Vec<SearchStep>> {
-        self.search.as_ref().map(|search| search.history.iter().map(SearchStep::from).collect())
+    fn history(&self, py: Python<'_>) -> PyResult<Option<Py<PyAny>>> {
+        let Some(search) = &self.search else { return Ok(None) };
+        match &search.work {
+            Work::Tension(_, steps) => {
+                steps.iter().map(SearchStep::from).collect::<Vec<_>>().into_py_any(py)
+            }
+            Work::Fair(_, steps) => {
+                steps.iter().map(FairStep::from).collect::<Vec<_>>().into_py_any(py)
+            }
+        }
+        .map(Some)
     }
 
     /// What the fit was asked for, by the names of `check`; `None` of a curve of given tension. For files.

@@ -9,6 +9,7 @@ use std::{any::Any, fmt::Debug, sync::Arc};
 use pyo3::{PyClass, PyClassInitializer, exceptions::PyTypeError, prelude::*};
 use shapespline::{
     catmull_rom::CatmullRom,
+    fair::FairSpline,
     geometry::{self, Boundary, DVec3, DataPolygon, InputError, PiecewiseCubic, Side},
     nu::NuSpline,
     search::Interpolant,
@@ -18,7 +19,7 @@ use shapespline::{
 use crate::{
     catmull_rom,
     diagnostics::Search,
-    nu,
+    fair, nu,
     pickle::{self, Kind, Reduced},
     tension,
 };
@@ -41,6 +42,8 @@ pub(crate) enum Family {
     Tension,
     /// Catmull–Rom curves.
     CatmullRom,
+    /// Fair curves.
+    Fair,
 }
 
 /// A family of curves: what the crate of its mathematics does not say.
@@ -87,6 +90,10 @@ pub(crate) trait Curve: Debug + Send + Sync {
     /// One a point.
     fn tangents(&self) -> Vec<DVec3>;
     fn boundary(&self) -> Boundary;
+    /// The knots that are data points, where not all are.
+    fn nodes(&self) -> Option<&[usize]> {
+        None
+    }
     fn polygon(&self) -> Result<DataPolygon, InputError>;
     fn is_sound(&self) -> bool;
     /// Appends the curve in postcard's form.
@@ -126,7 +133,56 @@ impl<C: Member> Curve for C {
     }
 }
 
+impl Curve for FairSpline {
+    fn family(&self) -> Family {
+        Family::Fair
+    }
+    fn as_any(&self) -> &dyn Any {
+        self
+    }
+    fn path(&self) -> &dyn geometry::Curve {
+        self.curve()
+    }
+    fn cubic(&self) -> &PiecewiseCubic {
+        self.curve()
+    }
+    fn tension(&self) -> &[f64] {
+        &[]
+    }
+    fn tangents(&self) -> Vec<DVec3> {
+        self.tangents()
+    }
+    fn boundary(&self) -> Boundary {
+        self.boundary()
+    }
+    fn nodes(&self) -> Option<&[usize]> {
+        Some(self.nodes())
+    }
+    fn polygon(&self) -> Result<DataPolygon, InputError> {
+        self.polygon()
+    }
+    fn is_sound(&self) -> bool {
+        true
+    }
+    fn write(&self, bytes: Vec<u8>) -> Result<Vec<u8>, postcard::Error> {
+        postcard::to_extend(self, bytes)
+    }
+}
+
 impl dyn Curve + '_ {
+    /// Number of nodes: the data points, but for those that were left out.
+    pub(crate) fn count(&self) -> usize {
+        self.nodes().map_or(self.cubic().points().len(), <[usize]>::len)
+    }
+
+    /// Those of some values, one per knot, that belong to nodes.
+    pub(crate) fn at_nodes<T: Copy>(&self, values: &[T]) -> Vec<T> {
+        match self.nodes() {
+            Some(nodes) => nodes.iter().map(|&k| values[k]).collect(),
+            None => values.to_vec(),
+        }
+    }
+
     /// The curve's own parameter where the image, run through linearly on each segment, has `u`.
     pub(crate) fn own_parameter(&self, u: f64) -> f64 {
         if self.family() != Family::Tension || !u.is_finite() {
@@ -139,7 +195,7 @@ impl dyn Curve + '_ {
 
 /// A curve through points in space or in the plane: the base of all families.
 ///
-/// Not made directly: use `NuSpline`, `TensionSpline` or `CatmullRom`. A curve is immutable, compares and hashes by identity, can be
+/// Not made directly: use `FairSpline`, `NuSpline`, `TensionSpline` or `CatmullRom`. A curve is immutable, compares and hashes by identity, can be
 /// pickled and copied, and may be used from several threads at once.
 ///
 /// Examples
@@ -167,6 +223,7 @@ impl SpaceCurve {
             Family::Nu => self.with_class(py, nu::NuSpline),
             Family::Tension => self.with_class(py, tension::TensionSpline),
             Family::CatmullRom => self.with_class(py, catmull_rom::CatmullRom),
+            Family::Fair => self.with_class(py, fair::FairSpline),
         }
     }
 
@@ -188,18 +245,22 @@ impl SpaceCurve {
     #[new]
     fn new() -> PyResult<Self> {
         Err(PyTypeError::new_err(
-            "SpaceCurve is the base of the curves: make a NuSpline, a TensionSpline or a CatmullRom",
+            "SpaceCurve is the base of the curves: make a FairSpline, a NuSpline, a \
+             TensionSpline or a CatmullRom",
         ))
     }
 
     fn __repr__(slf: &Bound<'_, Self>) -> PyResult<String> {
         let curve = &slf.get().curve;
         let cubic = curve.cubic();
-        let (n, knots) = (cubic.points().len(), cubic.knots());
+        let knots = cubic.knots();
         let points = curve.map.count();
         let boundary = attributes::boundary_name(curve.boundary()).unwrap_or("tangents");
         let tense = curve.tension().iter().filter(|&&t| t > 0.0).count();
         let tension = match tense {
+            _ if curve.family() == Family::Fair => {
+                format!("{} extra knots", knots.len() - curve.count())
+            }
             0 => "no tension".to_owned(),
             _ => {
                 let largest = curve.tension().iter().copied().fold(0.0, f64::max);
@@ -211,7 +272,7 @@ impl SpaceCurve {
             slf.get_type().name()?,
             if cubic.dimension().len() == 2 { "the plane" } else { "space" },
             short(knots[0]),
-            short(knots[n - 1]),
+            short(knots[knots.len() - 1]),
         ))
     }
 

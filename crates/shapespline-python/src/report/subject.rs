@@ -3,7 +3,9 @@
 use std::sync::Arc;
 
 use shapespline::{
-    criteria::{Checker, Criterion, CurveChecker, CurveError, Notes, Record, ShapeReport},
+    criteria::{
+        Checker, Criterion, CurveChecker, CurveError, INTERPOLATION, Notes, Record, ShapeReport,
+    },
     geometry::{DVec3, DataPolygon, InputMap, PiecewiseBezier},
 };
 
@@ -89,7 +91,7 @@ fn placed(map: &InputMap, error: CurveError) -> CurveError {
 impl Subject {
     pub(crate) fn segments(&self) -> usize {
         match self {
-            Self::Own(curve) => curve.cubic().segments(),
+            Self::Own(curve) => curve.count() - 1,
             Self::Other { polygon, .. } => polygon.segments(),
         }
     }
@@ -107,6 +109,19 @@ impl Subject {
         match self {
             Self::Own(curve) => {
                 let polygon = curve.polygon()?;
+                if curve.nodes().is_some() {
+                    // Several pieces per segment: decided piece by piece.
+                    let pieces = PiecewiseBezier::from(curve.cubic());
+                    return CurveChecker::new(
+                        &polygon,
+                        &pieces,
+                        criteria,
+                        tolerances,
+                        INTERPOLATION,
+                    )
+                    .map(|checker| work(Judge::Other(checker, &curve.map)))
+                    .map_err(|error| placed(&curve.map, error));
+                }
                 let checker = Checker::new(&polygon, criteria, tolerances);
                 Ok(work(Judge::Own(checker, curve.cubic().legs(), curve)))
             }
