@@ -308,7 +308,7 @@ def test_fit_writes_them(ending, tmp_path):
     out = tmp_path / f"o.{ending}"
     assert cli.main(["fit", str(points), "-o", str(out)]) == 0
     text = out.read_text(encoding="utf-8")
-    curve = ss.NuSpline.shape_preserving([[0, 0], [1, 1], [2, 0], [3, 1]])
+    curve = ss.fit([[0, 0], [1, 1], [2, 0], [3, 1]])
     if ending == "svg":
         assert text == interchange.svg(curve)
     elif ending == "step":
