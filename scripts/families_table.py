@@ -1,4 +1,4 @@
-"""Print the table of python/docs/families.md: what the three families make of the data sets.
+"""Print the table of python/docs/families.md: what the families make of the data sets.
 
 Run from the root of the repository; a test holds the page against it:
 
@@ -28,7 +28,9 @@ COLUMNS = (
     "solves",
     "from the polygon",
     "from the C² cubic",
+    "energy over the cubic's",
     "largest curvature",
+    "the cubic's",
 )
 #: Points looked at on each segment.
 SAMPLES = 129
@@ -49,24 +51,29 @@ def from_broken_line(points: Array, corners: Array) -> float:
     return float(np.linalg.norm(points[:, None] - nearest, axis=-1).min(axis=1).max())
 
 
-def largest_curvature(curve: ss.SpaceCurve) -> float:
-    """Return the largest curvature of the samples, and of both sides of every point."""
-    u = curve.parameters
-    inside = u[:-1, None] + np.diff(u)[:, None] * np.linspace(0, 1, SAMPLES)[1:-1]
-    ends = np.r_[curve.curvature(u[:-1]), curve.curvature(u[1:], side="left")]
-    return float(max(curve.curvature(inside).max(), ends.max()))
+def measures(curve: ss.SpaceCurve) -> tuple[float, float]:
+    """Return ∫κ² ds and the largest curvature."""
+    found = curve.fairness()
+    return found.bending / found.length, found.max_curvature
 
 
-def row(case: cases.Case, cubic: Array, family: type[ss.SpaceCurve]) -> list[str]:
-    """Return the cells of a data set and a family; distances in mean chords of the data."""
+def row(case: cases.Case, plain: ss.NuSpline, family: type[ss.SpaceCurve]) -> list[str]:
+    """Return the cells of a data set and a family; lengths in mean chords of the data."""
     case = replace(case, family=family)
-    before, after = case.fit().check(), case.preserve()
+    # The search for a fair curve begins with the plain cubic.
+    before = (plain if family is ss.FairSpline else case.fit()).check()
+    after = case.preserve()
     chord = np.linalg.norm(np.diff(case.points, axis=0), axis=1).mean()
-    own = pieces(after)
-    ends = zip(case.points[:-1], case.points[1:], strict=True)
-    polygon = max(from_broken_line(p, np.array(e)) for p, e in zip(own, ends, strict=True))
-    apart = max(from_broken_line(p, q) for p, q in zip(own, cubic, strict=True))
+    own, u = pieces(after), after.knots
+    segment = np.searchsorted(case.fit().parameters[1:-1], u[:-1], side="right")
+    polygon = max(
+        from_broken_line(p, case.points[i : i + 2]) for p, i in zip(own, segment, strict=True)
+    )
+    # The pieces of the cubic between the same knots.
+    t = u[:-1, None] + np.diff(u)[:, None] * np.linspace(0, 1, SAMPLES)
+    apart = max(from_broken_line(p, q) for p, q in zip(own, plain(t), strict=True))
     search = after.diagnostics
+    (energy, largest), (energy_cubic, largest_cubic) = measures(after), measures(plain)
     return [
         case.name,
         family.__name__,
@@ -76,16 +83,18 @@ def row(case: cases.Case, cubic: Array, family: type[ss.SpaceCurve]) -> list[str
         str(search.solves),
         f"{polygon / chord:.3g}",
         f"{apart / chord:.3g}",
-        f"{largest_curvature(after) * chord:.3g}",
+        f"{energy / energy_cubic:.3g}",
+        f"{largest * chord:.3g}",
+        f"{largest_cubic * chord:.3g}",
     ]
 
 
 def rows() -> Iterator[list[str]]:
     """Yield the cells of every data set and family."""
     for case in cases.shared():
-        cubic = pieces(case.fit())
+        plain = case.fit()
         for family in cases.FAMILIES:
-            yield row(case, cubic, family)
+            yield row(case, plain, family)
 
 
 def table() -> str:
