@@ -10,10 +10,16 @@ from hypothesis import strategies as st
 import cases
 import polygons
 import shapespline as ss
+from scale import scaled
 from shape_by_sampling import of_curve, shape_by_sampling
 
 # Polygons a family and kind of end: with 13 families and 4 ends some thousands in all.
 POLYGONS = 60
+
+
+def count_of(curve_class, count):
+    """Return of how many polygons a family fits: a fair curve takes some 100 times as long."""
+    return count if curve_class in cases.TENSE else scaled(count // 3)
 
 
 def assert_shape(curve, **options):
@@ -60,7 +66,7 @@ def ended(points, end, rng):
 @every_family
 def test_generated_polygons(curve_class, family, end):
     rng = np.random.default_rng([len(family), len(end)])
-    for number in range(POLYGONS):
+    for number in range(count_of(curve_class, POLYGONS)):
         points = polygons.FAMILIES[family](rng, int(rng.integers(4, 40)))
         if (case := ended(points, end, rng)) is None:
             continue
@@ -77,7 +83,7 @@ def test_generated_polygons(curve_class, family, end):
 @every_family
 def test_other_parametrisations(curve_class, family, parameters):
     rng = np.random.default_rng(11)
-    for _ in range(POLYGONS // 4):
+    for _ in range(count_of(curve_class, POLYGONS // 4)):
         points = polygons.FAMILIES[family](rng, 20)
         assert_shape(cases.preserving(curve_class)(points, parameters))
 
