@@ -36,14 +36,14 @@ def test_demo_prints_each_set(demo, name):
     assert name.lower() in demo[0].stdout.lower()
 
 
-@pytest.mark.parametrize("family", ["NuSpline", "TensionSpline", "CatmullRom"])
+@pytest.mark.parametrize("family", ["FairSpline", "NuSpline", "TensionSpline", "CatmullRom"])
 def test_demo_compares_the_families(demo, family):
     lines = demo[0].stdout.splitlines()
     header = next(line for line in lines if "CatmullRom" in line)
     assert family in header
     table = lines[lines.index(header) + 1 :]
     assert len(table) == len(SETS)
-    assert all(line.count("→ 0,") == 3 for line in table)
+    assert all(line.count(" 0, κ ") == 4 for line in table)
 
 
 def test_demo_draws_pictures_that_show_something(demo):
