@@ -79,6 +79,13 @@ impl Calls {
     pub(crate) const PAIR: Self =
         Self::CONVEXITY.and(Self::INFLECTION).and(Self::GLOBAL_CONVEXITY).and(Self::TURNING_PAIR);
 
+    /// What a segment asks for only where the polygon turns at both of its nodes.
+    pub(crate) const OF_BOTH: Self = Self::PAIR
+        .and(Self::RIGHT_TORSION)
+        .and(Self::LEFT_TORSION)
+        .and(Self::COPLANARITY)
+        .and(Self::SPLIT_COPLANARITY);
+
     /// Whether any call of `other` is among these.
     #[inline]
     #[must_use]
@@ -133,7 +140,7 @@ impl Calls {
     /// The calls that imply a regular curve where they are met. A cubic that stops where its legs are
     /// independent has none of them; else `ω` has a double root there, so along no vector is it positive
     /// throughout, or does it change its sign once.
-    const IMPLY_REGULAR: Self =
+    pub(crate) const IMPLY_REGULAR: Self =
         Self::CONVEXITY.and(Self::INFLECTION).and(Self::RIGHT_TORSION).and(Self::LEFT_TORSION);
 
     /// The criteria that the calls belong to.

@@ -40,6 +40,33 @@ impl<'a> Checker<'a> {
         Self { local, criteria, calls: local.all_calls() }
     }
 
+    /// Asks for nothing at some nodes, as at ends of zero curvature: where the curve is to have corners.
+    #[must_use]
+    pub fn with_free_nodes(mut self, nodes: &[usize]) -> Self {
+        let n = self.calls.len();
+        let regular = Calls::of(Criterion::Regular);
+        for &node in nodes {
+            let at = |k: isize| {
+                let segment = node as isize + k;
+                let inside = (0..n as isize).contains(&segment) || self.polygon().is_closed();
+                inside.then_some(segment.rem_euclid(n as isize) as usize)
+            };
+            let touched = [
+                (at(-2), Calls::TURNING_AFTER),
+                (at(-1), Calls::AT_END.and(Calls::TURNING_AFTER).and(Calls::OF_BOTH)),
+                (at(0), Calls::AT_START.and(Calls::TURNING_BEFORE).and(Calls::OF_BOTH)),
+                (at(1), Calls::TURNING_BEFORE),
+            ];
+            for (segment, calls) in touched {
+                let Some(segment) = segment else { continue };
+                let left = self.calls[segment].without(calls);
+                let implied = left.any(Calls::IMPLY_REGULAR) || left.any(regular);
+                self.calls[segment] = if implied { left } else { left.and(Calls::REGULAR) };
+            }
+        }
+        self
+    }
+
     /// The polygon.
     #[must_use]
     pub fn polygon(&self) -> &'a DataPolygon {

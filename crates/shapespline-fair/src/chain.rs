@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use glam::DVec3;
 use shapespline_criteria::Criterion;
 
 use crate::{
@@ -19,6 +20,8 @@ use crate::{
 pub(crate) enum Freedom {
     /// Both derivatives.
     Free,
+    /// The first derivative along a unit vector alone, and the second.
+    Along(DVec3),
     /// Neither.
     Held,
     /// The second derivative alone: given tangents.

@@ -10,7 +10,7 @@ use crate::{
 };
 
 /// The cubic pieces of a segment, in the user's units.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct Pieces {
     /// Where the extra knots lie, in `(0, 1)`.
     pub(crate) breaks: Vec<f64>,
@@ -102,12 +102,12 @@ fn third_derivative_jumps(d: &Legs) -> [bool; 2] {
 /// The curve of some pieces through the points of a polygon; and the knots that are data points.
 pub(crate) fn assemble(
     polygon: &DataPolygon,
-    pieces: impl Iterator<Item = Pieces>,
+    pieces: Vec<Pieces>,
 ) -> Result<(PiecewiseCubic, Vec<usize>), InputError> {
     let (u, data) = (polygon.parameters(), polygon.points());
     let (mut knots, mut points, mut legs) = (vec![u[0]], vec![data[0]], Vec::new());
     let mut nodes = vec![0];
-    for (i, segment) in pieces.enumerate() {
+    for (i, segment) in pieces.into_iter().enumerate() {
         let h = u[i + 1] - u[i];
         knots.extend(segment.breaks.iter().map(|t| u[i] + t * h));
         knots.push(u[i + 1]);

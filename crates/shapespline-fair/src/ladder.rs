@@ -2,7 +2,7 @@
 
 use shapespline_banded::SolveError;
 use shapespline_criteria::Criterion;
-use shapespline_geometry::DVec3;
+use shapespline_geometry::{BezierPart, DVec3, DVec4, length};
 
 use crate::{
     Energy, FairOptions, Method, Phase,
@@ -13,6 +13,7 @@ use crate::{
     export::Pieces,
     rows::Rules,
     segment::Demands,
+    shape::off_chord,
     solve::{
         LAST, finish, finish_bending, finish_parametric, improve, replace, restart_all, solve,
     },
@@ -68,7 +69,37 @@ impl Found {
     fn failing(&self, demands: &Demands<'_>) -> Vec<usize> {
         let checker = demands.checker;
         let legs = |i: usize| self.pieces(demands, i).legs[0];
-        checker.all_faults(legs).into_iter().map(|(i, _)| i).collect()
+        let mut failing: Vec<usize> =
+            checker.all_faults(legs).into_iter().map(|(i, _)| i).collect();
+        let constraints = demands.constraints;
+        if constraints.max_deviation.is_some() || !constraints.tangents.is_empty() {
+            let strays = |&i: &usize| {
+                self.leaves_direction(demands, i)
+                    || deviates(demands, i, &self.pieces(demands, i).parts(ends_of(demands, i)))
+            };
+            failing.extend((0..checker.polygon().segments()).filter(strays));
+            failing.sort_unstable();
+            failing.dedup();
+        }
+        failing
+    }
+
+    /// Whether any control point lies farther from its chord than it may.
+    pub(crate) fn any_deviates(&self, demands: &Demands<'_>) -> bool {
+        demands.constraints.max_deviation.is_some()
+            && (0..self.solved.len())
+                .any(|i| deviates(demands, i, &self.pieces(demands, i).parts(ends_of(demands, i))))
+    }
+
+    /// Whether the curve has another direction at a node of a segment than is asked for there.
+    fn leaves_direction(&self, demands: &Demands<'_>, i: usize) -> bool {
+        [i, (i + 1) % self.nodes.len()].into_iter().any(|node| {
+            let q = self.nodes[node].q;
+            demands
+                .constraints
+                .direction(node)
+                .is_some_and(|t| q.cross(t).length() > 1e-12 * q.length() || !(q.dot(t) > 0.0))
+        })
     }
 
     /// The pieces of a segment.
@@ -162,6 +193,15 @@ fn ends_of(demands: &Demands<'_>, i: usize) -> [DVec3; 2] {
     [points[i], points[i + 1]]
 }
 
+/// Whether a control point of a segment lies farther from its chord than it may.
+fn deviates(demands: &Demands<'_>, i: usize, parts: &[BezierPart]) -> bool {
+    let Some(most) = demands.deviation(i) else { return false };
+    let polygon = demands.checker.polygon();
+    let (direction, chord) = (polygon.direction(i), length(polygon.chord(i)));
+    let off = |p: &DVec4| off_chord(p.truncate() / chord, 0.0, direction).length();
+    !parts.iter().flat_map(|part| &part.control).all(|p| off(p) <= most)
+}
+
 /// The exact check of what a chain will export. Where it does not prove everything, the barrier is
 /// raised, which widens the margins. Returns what stays open.
 fn certify(demands: &Demands<'_>, chain: &mut Chain, control: &mut Control<'_>) -> Vec<usize> {
@@ -223,7 +263,8 @@ fn unproved(demands: &Demands<'_>, chain: &Chain) -> Vec<usize> {
         let (i, span) = (index(chain, k, segments), &chain.segments[k].span);
         let ends = ends_of(demands, i);
         let pieces = Pieces::of(span, &chain.legs(k), demands.units, ends);
-        !demands.checker.unproved(i, &pieces.parts(ends)).is_empty()
+        let parts = pieces.parts(ends);
+        !demands.checker.unproved(i, &parts).is_empty() || deviates(demands, i, &parts)
     };
     let open = (0..chain.segments.len()).filter(open);
     open.map(|k| index(chain, k, segments)).collect()

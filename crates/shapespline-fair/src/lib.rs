@@ -43,6 +43,7 @@
 
 mod barrier;
 mod chain;
+mod constraints;
 mod control;
 mod cubic;
 mod definite;
@@ -63,6 +64,7 @@ mod spline;
 mod start;
 mod window;
 
+pub use constraints::Constraints;
 pub use energy::Energy;
 pub use options::FairOptions;
 pub use outcome::{Diagnostics, Fit, FitError, Method, Phase, Status, Step};

@@ -181,7 +181,7 @@ pub(crate) fn set_start(demands: &Demands<'_>, chain: &mut Chain, j: usize, scal
     let total = demands.checker.polygon().nodes();
     let start = start(demands, (chain.first + j) % total, scales);
     match chain.freedom[j] {
-        Freedom::Free => chain.nodes[j] = start,
+        Freedom::Free | Freedom::Along(_) => chain.nodes[j] = start,
         Freedom::TangentHeld => chain.nodes[j].r = start.r,
         Freedom::Held => {}
     }

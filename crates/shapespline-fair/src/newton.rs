@@ -153,6 +153,11 @@ impl Chain {
             w.factors.solve(&mut w.right);
             w.direction.clear();
             w.direction.extend(w.right.iter().map(node));
+            for (step, freedom) in w.direction.iter_mut().zip(&self.freedom) {
+                if let Freedom::Along(t) = freedom {
+                    step.q = *t * step.q.dot(*t);
+                }
+            }
             let decrement = self.decrement(w);
             if !decrement.is_finite() {
                 return None;
@@ -257,7 +262,7 @@ impl Chain {
     /// Whether a coordinate of a node may not move.
     fn is_fixed(&self, node: usize, i: usize) -> bool {
         let held = match self.freedom[node] {
-            Freedom::Free => false,
+            Freedom::Free | Freedom::Along(_) => false,
             Freedom::Held => true,
             Freedom::TangentHeld => i < 3,
         };
@@ -272,6 +277,28 @@ impl Chain {
                 gradient[i / 3][i % 3] = 0.0;
                 hessian[i] = [0.0; 12];
                 hessian.iter_mut().for_each(|row| row[i] = 0.0);
+            }
+            if let Freedom::Along(t) = self.freedom[node] {
+                let (t, from) = (t.to_array(), 6 * side);
+                gradient[2 * side] = DVec3::from(t) * gradient[2 * side].dot(DVec3::from(t));
+                let along = |v: [f64; 3]| t.map(|x| x * (v[0] * t[0] + v[1] * t[1] + v[2] * t[2]));
+                for row in hessian.iter_mut() {
+                    let v = along([row[from], row[from + 1], row[from + 2]]);
+                    row[from..from + 3].copy_from_slice(&v);
+                }
+                for j in 0..12 {
+                    let v = along([0, 1, 2].map(|i| hessian[from + i][j]));
+                    (0..3).for_each(|i| hessian[from + i][j] = v[i]);
+                }
+                // Across the direction nothing moves, whatever the stiffness.
+                let stiffness = (0..3).map(|i| hessian[from + i][from + i].abs()).sum::<f64>();
+                let stiffness = stiffness.max(f64::MIN_POSITIVE);
+                for i in 0..3 {
+                    for j in 0..3 {
+                        let across = f64::from(u8::from(i == j)) - t[i] * t[j];
+                        hessian[from + i][from + j] += stiffness * across;
+                    }
+                }
             }
         }
     }

@@ -3,10 +3,10 @@
 use shapespline_criteria::{Criteria, Tolerances};
 use shapespline_geometry::InputError;
 
-use crate::Energy;
+use crate::{Constraints, Energy};
 
 /// What to keep, how exactly, and what to minimise.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct FairOptions {
     /// The criteria to keep.
     pub criteria: Criteria,
@@ -14,6 +14,8 @@ pub struct FairOptions {
     pub tolerances: Tolerances,
     /// What is minimised.
     pub energy: Energy,
+    /// What else the curve has to do.
+    pub constraints: Constraints,
     /// Largest number of Newton steps in all windows together; at least one. `None` leaves it to the
     /// limits of each phase, which end every search.
     pub max_iterations: Option<usize>,
@@ -25,6 +27,7 @@ impl Default for FairOptions {
             criteria: Criteria::OF_FITS,
             tolerances: Tolerances::default(),
             energy: Energy::default(),
+            constraints: Constraints::default(),
             max_iterations: None,
         }
     }

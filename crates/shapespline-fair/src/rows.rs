@@ -8,6 +8,7 @@
 //! | [`Kind::Between`] | `(Q'×L)·P`: the tangent lies between the chords | Gautam, (12.1) |
 //! | [`Kind::Twist`] | `±det(d_j, d_{j+1}, d_{j+2})`: the torsion of piece `j` | Karavelas–Kaklis, (4.16) |
 //! | [`Kind::Forward`] | `d·u − v`: no loop, no cusp | ours |
+//! | [`Kind::Near`] | `1 − ‖v‖²/δ²`, `v` from the nearest place on the chord to a control point | ours |
 //! | [`Kind::Plane`], [`Kind::Line`] | `k²(w·n)² − ‖w×n‖²` of a Bernstein coefficient of `ω` or `Q'` | (5.10), (5.22) there |
 //! | [`Kind::Side`] | a coefficient of `ω·n` on a part of a piece | |
 //!
@@ -41,6 +42,8 @@ pub(crate) enum Kind {
     Between { end: u8 },
     /// A leg along its forward direction.
     Forward { leg: u8 },
+    /// A control point, `1` to `4`, near the chord.
+    Near { point: u8 },
     /// A Bernstein coefficient of `ω·n` on a part of a piece, as a mixture of those of the piece.
     Side { piece: u8, normal: u8, mixture: [f64; 3] },
     /// A Bernstein coefficient of `ω` on a part of a piece.
@@ -61,7 +64,7 @@ impl Kind {
             Self::Plane { .. } | Self::Side { .. } => Some(Criterion::Coplanarity),
             Self::Line { .. } => Some(Criterion::Collinearity),
             Self::Turn { .. } | Self::Between { .. } => Some(Criterion::Turning),
-            Self::Forward { .. } => None,
+            Self::Forward { .. } | Self::Near { .. } => None,
         }
     }
 }
@@ -172,6 +175,11 @@ pub(crate) fn rows(segment: &Segment, change: usize, rules: &Rules, out: &mut Ve
         let end = forward[leg as usize];
         if leg == 2 || segment.bisectors[end] != DVec3::ZERO {
             out.push(Row { kind: Kind::Forward { leg }, factor: 1.0 });
+        }
+    }
+    if let Some(deviation) = segment.deviation {
+        for point in 1..=4u8 {
+            out.push(Row { kind: Kind::Near { point }, factor: deviation.min(1.0) });
         }
     }
     cones(segment, rules, out);

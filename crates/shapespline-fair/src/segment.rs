@@ -4,7 +4,7 @@ use glam::DVec3;
 use shapespline_criteria::{Calls, Checker, separation};
 use shapespline_geometry::{DataPolygon, Dimension, length, normalize};
 
-use crate::{element::Span, energy::Energy};
+use crate::{Constraints, element::Span, energy::Energy};
 
 /// Turns above 163° (`‖l + l'‖` at most this) have no forward direction.
 const SHARPEST: f64 = 0.3;
@@ -51,6 +51,8 @@ pub(crate) struct Segment {
     pub(crate) plane: Option<[f64; 2]>,
     /// Whether the tangent stays near the chord in the first and in the second half.
     pub(crate) line: [bool; 2],
+    /// How far control points may lie from the chord, over its length.
+    pub(crate) deviation: Option<f64>,
     /// Least speed forward, over that of the chord.
     pub(crate) speed: f64,
     /// What is minimised.
@@ -82,6 +84,7 @@ impl Units {
 pub(crate) struct Demands<'a> {
     pub(crate) checker: &'a Checker<'a>,
     pub(crate) units: Units,
+    pub(crate) constraints: &'a Constraints,
 }
 
 impl Demands<'_> {
@@ -129,6 +132,12 @@ impl Demands<'_> {
         self.checker.calls()[i].any(Calls::COPLANARITY.and(Calls::SPLIT_COPLANARITY))
     }
 
+    /// How far control points of a segment may lie from its chord, over the chord's length.
+    pub(crate) fn deviation(&self, i: usize) -> Option<f64> {
+        let chord = length(self.checker.polygon().chord(i));
+        self.constraints.max_deviation.map(|most| most / chord)
+    }
+
     pub(crate) fn segment(&self, i: usize) -> Segment {
         let polygon = self.checker.polygon();
         let calls = self.checker.calls()[i];
@@ -172,6 +181,7 @@ impl Demands<'_> {
                 calls.any(Calls::COPLANARITY).then_some([1.0, 1.0])
             },
             line: [calls.any(Calls::LINE_AT_START), calls.any(Calls::LINE_AT_END)],
+            deviation: self.deviation(i),
             speed: FORWARD,
             energy: Energy::Parametric,
             weight: (sine * sine).max(1e-12) / span.length,

@@ -1,10 +1,10 @@
 //! Values, gradients and Hessians of the conditions of a segment.
 
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 
 use crate::{
-    element::{HODOGRAPH, Legs, OMEGA, products},
-    legs::LegTerms,
+    element::{HODOGRAPH, Legs, OMEGA, T, TAU, products},
+    legs::{LegTerms, outer},
     rows::{Kind, Row, Rules},
     segment::Segment,
 };
@@ -66,6 +66,25 @@ impl<'a> Shape<'a> {
         if end == 0 { own.cross(n) } else { n.cross(own) }
     }
 
+    fn deviation_squared(&self) -> f64 {
+        self.segment.deviation.map_or(f64::INFINITY, |d| d * d)
+    }
+
+    /// A control point, from the nearest place on the chord, over the chord's length; and it is, from
+    /// its end of the chord, a mixture of the three legs that begin with `first`.
+    fn off_chord(&self, point: u8) -> (usize, [f64; 3], DVec3) {
+        let (first, w) = match point {
+            1 => (0, [TAU / 3.0, 0.0, 0.0]),
+            2 => (0, [TAU / 3.0, T / 3.0, 0.0]),
+            3 => (2, [0.0, -T / 3.0, -TAU / 3.0]),
+            _ => (2, [0.0, 0.0, -TAU / 3.0]),
+        };
+        let d = &self.legs[first..first + 3];
+        let from_end = d[0] * w[0] + d[1] * w[1] + d[2] * w[2];
+        let end = if point > 2 { 1.0 } else { 0.0 };
+        (first, w, off_chord(from_end, end, self.segment.span.direction))
+    }
+
     /// `Q'` as a mixture of Bernstein coefficients on a piece.
     fn tangent(&self, piece: usize, mixture: [f64; 3]) -> ([f64; 3], DVec3) {
         let w = combine(&HODOGRAPH[piece], mixture);
@@ -100,6 +119,10 @@ impl<'a> Shape<'a> {
             Kind::Forward { leg } => {
                 let (direction, least) = self.forward(leg);
                 self.legs[leg as usize].dot(direction) - least
+            }
+            Kind::Near { point } => {
+                let (_, _, off) = self.off_chord(point);
+                1.0 - off.length_squared() / self.deviation_squared()
             }
             Kind::Plane { piece, normal, mixture } => {
                 let w = combine(&OMEGA[piece as usize], mixture);
@@ -168,6 +191,12 @@ impl<'a> Shape<'a> {
                 legs[leg as usize - first] = self.forward(leg).0 * factor;
                 Gradient { first, legs }
             }
+            Kind::Near { point } => {
+                let (first, w, off) = self.off_chord(point);
+                // The nearest place on the chord moves along it, which changes no distance.
+                let slope = off * (-2.0 * factor / self.deviation_squared());
+                Gradient { first, legs: w.map(|w| slope * w) }
+            }
             Kind::Plane { piece, normal, mixture } => {
                 let first = piece as usize;
                 let w = combine(&OMEGA[first], mixture);
@@ -222,6 +251,21 @@ impl<'a> Shape<'a> {
                 let w = std::array::from_fn(|k| c[0][k] / x - c[2][k] / y);
                 let g = self.gradient_along(first, w, n);
                 terms.add_square(first, &g, 0.25 * multiplier * (x * y).sqrt());
+            }
+            Kind::Near { point } => {
+                let (first, w, off) = self.off_chord(point);
+                let along = off.dot(self.segment.span.direction);
+                // Beside the chord only what is across it counts; beyond its ends, everything.
+                let beside = along.abs() <= 1e-12 * off.length();
+                let own = self.segment.span.direction;
+                let across =
+                    if beside { DMat3::IDENTITY - outer(own, own) } else { DMat3::IDENTITY };
+                let size = -2.0 * m / self.deviation_squared();
+                for i in 0..3 {
+                    for j in i..3 {
+                        terms.hessian[first + i][first + j] += across * (size * w[i] * w[j]);
+                    }
+                }
             }
             Kind::Twist { piece } => {
                 let p = piece as usize;
@@ -281,6 +325,13 @@ fn combine(coefficients: &[[f64; 3]; 3], mixture: [f64; 3]) -> [f64; 3] {
     std::array::from_fn(|k| (0..3).map(|c| mixture[c] * coefficients[c][k]).sum())
 }
 
+/// From the nearest place on a unit chord to a point that is given from one of its ends, which lies at `end`
+/// along it.
+pub(crate) fn off_chord(from_end: DVec3, end: f64, direction: DVec3) -> DVec3 {
+    let along = from_end.dot(direction);
+    from_end - direction * (along.clamp(-end, 1.0 - end))
+}
+
 #[cfg(test)]
 mod tests {
     use proptest::prelude::*;
@@ -314,6 +365,7 @@ mod tests {
             bisectors: [DVec3::new(0.8, 0.0, 0.6), DVec3::new(0.0, 0.6, 0.8)],
             plane: Some([0.2, 0.6]),
             line: [true; 2],
+            deviation: Some(0.3),
             speed: FORWARD,
             energy: Energy::Parametric,
             weight: 1.0,

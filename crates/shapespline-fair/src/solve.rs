@@ -133,7 +133,8 @@ pub(crate) fn replace(demands: &Demands<'_>, chain: &mut Chain) {
     restart_all(demands, chain);
     let closed = std::mem::replace(&mut chain.nodes, before);
     chain.choose_changes();
-    loop {
+    // Each round replaces a node at least.
+    for _ in 0..=chain.nodes.len() {
         let failing = chain.failing();
         let nodes: Vec<usize> = failing.iter().flat_map(|&k| chain.ends(k)).collect();
         let mut changed = false;

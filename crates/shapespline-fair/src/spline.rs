@@ -11,10 +11,11 @@ use shapespline_geometry::{
 };
 
 use crate::{
-    Diagnostics, Energy, FairOptions, Fit, FitError, Status, Step,
+    Constraints, Diagnostics, Energy, FairOptions, Fit, FitError, Method, Status, Step,
+    constraints::Part,
     control::Control,
     energy,
-    export::assemble,
+    export::{Pieces, assemble},
     ladder::{Found, climb},
     segment::{Demands, Units},
 };
@@ -31,6 +32,8 @@ pub struct FairSpline {
     nodes: Vec<usize>,
     boundary: Boundary,
     energy: Energy,
+    /// The points at which it has corners.
+    corners: Vec<usize>,
 }
 
 /// The stored form, checked on reading as far as anything could go wrong later.
@@ -42,6 +45,7 @@ struct Stored {
     nodes: Vec<usize>,
     boundary: Boundary,
     energy: Energy,
+    corners: Vec<usize>,
 }
 
 #[cfg(feature = "serde")]
@@ -49,7 +53,7 @@ impl TryFrom<Stored> for FairSpline {
     type Error = InputError;
 
     fn try_from(stored: Stored) -> Result<Self, InputError> {
-        let Stored { curve, nodes, boundary, energy } = stored;
+        let Stored { curve, nodes, boundary, energy, corners } = stored;
         let bad = |index: usize, value: usize| InputError::OutOfRange {
             argument: "nodes",
             index,
@@ -65,7 +69,12 @@ impl TryFrom<Stored> for FairSpline {
         if let Some(i) = nodes.windows(2).position(step) {
             return Err(bad(i + 1, nodes[i + 1]));
         }
-        Ok(Self { curve, nodes, boundary, energy })
+        let beyond = |&k: &usize| k >= nodes.len();
+        if let Some(index) = corners.iter().position(beyond) {
+            let (value, allowed) = (corners[index] as f64, "indices of points");
+            return Err(InputError::OutOfRange { argument: "corners", index, value, allowed });
+        }
+        Ok(Self { curve, nodes, boundary, energy, corners })
     }
 }
 
@@ -92,14 +101,25 @@ impl FairSpline {
         monitor: &mut dyn FnMut(&Step) -> ControlFlow<()>,
     ) -> Result<Fit, FitError> {
         options.validate()?;
-        let checker = Checker::new(&polygon, options.criteria, options.tolerances);
-        let demands = Demands { checker: &checker, units: Units::of(&polygon) };
+        let constraints = &options.constraints;
+        if !constraints.is_empty() {
+            constraints.validate(&polygon)?;
+            let checker = Checker::new(&polygon, options.criteria, options.tolerances);
+            constraints.refuse_conflicts(&checker.with_free_nodes(&constraints.corners))?;
+        }
         let mut control = Control::new(options.max_iterations, monitor);
-        let found = climb(&demands, options, &mut control)?;
-        let pieces = (0..polygon.segments()).map(|i| found.pieces(&demands, i));
-        let (curve, nodes) = assemble(&polygon, pieces)?;
-        let boundary = polygon.boundary();
-        let curve = Self { curve, nodes, boundary, energy: options.energy };
+        let mut whole = Whole::of(&polygon);
+        for part in constraints.parts(&polygon)? {
+            whole.add(&part, options, &mut control)?;
+        }
+        let (curve, nodes) = assemble(&polygon, whole.pieces)?;
+        let curve = Self {
+            curve,
+            nodes,
+            boundary: polygon.boundary(),
+            energy: options.energy,
+            corners: constraints.corners.clone(),
+        };
         let report = curve.check(options.criteria, options.tolerances)?;
         // What rounding hides in the end could not be widened: the report lists it.
         let proved = report.undecided.is_empty() || !control.is_over();
@@ -108,19 +128,17 @@ impl FairSpline {
             (_, true) => Status::Solved,
             (_, false) => Status::IterationLimit,
         };
-        let [energy, energy_cubic] =
-            [&found.nodes, &found.plain].map(|nodes| energy_of(&demands, nodes, options.energy));
         let diagnostics = Diagnostics {
             status,
-            method: found.method,
+            method: whole.method,
             iterations: control.iterations,
             solves: control.solves,
-            energy,
-            energy_cubic,
+            energy: whole.energy,
+            energy_cubic: whole.energy_cubic,
             max_curvature: fairness(&PiecewiseBezier::from(&curve.curve)).max_curvature,
             extra_knots: curve.curve.knots().len() - curve.nodes.len(),
-            active: active(&found),
-            tangent_scale: tangent_scale(&polygon, &found),
+            active: active(&whole.active),
+            tangent_scale: whole.tangent_scale,
         };
         Ok(Fit { curve, diagnostics, history: control.history, report })
     }
@@ -147,6 +165,12 @@ impl FairSpline {
     #[must_use]
     pub fn energy(&self) -> Energy {
         self.energy
+    }
+
+    /// The points at which the curve has corners.
+    #[must_use]
+    pub fn corners(&self) -> &[usize] {
+        &self.corners
     }
 
     /// Planar or spatial.
@@ -201,10 +225,66 @@ impl FairSpline {
         let curve = PiecewiseBezier::from(&self.curve);
         let tolerances = tolerances.validate()?;
         match CurveChecker::new(&polygon, &curve, criteria, tolerances, INTERPOLATION) {
-            Ok(checker) => Ok(checker.report()),
+            Ok(checker) => Ok(checker.with_free_nodes(&self.corners).report()),
             // The curve is made of the points that it is checked against.
             Err(_) => Ok(Checker::new(&polygon, criteria, tolerances).report(|_| [DVec3::NAN; 2])),
         }
+    }
+}
+
+/// The parts of a curve, put together.
+struct Whole {
+    /// Those of every segment, in order.
+    pieces: Vec<Pieces>,
+    method: Method,
+    energy: f64,
+    energy_cubic: f64,
+    active: Vec<(Criterion, usize)>,
+    tangent_scale: [f64; 2],
+}
+
+impl Whole {
+    /// Nothing yet.
+    fn of(polygon: &DataPolygon) -> Self {
+        Self {
+            pieces: vec![Pieces::default(); polygon.segments()],
+            method: Method::Cubic,
+            energy: 0.0,
+            energy_cubic: 0.0,
+            active: Vec::new(),
+            tangent_scale: [1.0; 2],
+        }
+    }
+
+    /// Finds the curve of a part, and adds it.
+    fn add(
+        &mut self,
+        part: &Part,
+        options: &FairOptions,
+        control: &mut Control<'_>,
+    ) -> Result<(), FitError> {
+        let total = self.pieces.len();
+        let constraints = part.own(&options.constraints, total);
+        // What lies near enough by itself is the curve without the limit.
+        let unlimited = Constraints { max_deviation: None, ..constraints.clone() };
+        let checker = Checker::new(&part.polygon, options.criteria, options.tolerances);
+        let units = Units::of(&part.polygon);
+        let mut demands = Demands { checker: &checker, units, constraints: &unlimited };
+        let mut found = climb(&demands, options, control)?;
+        demands.constraints = &constraints;
+        if found.any_deviates(&demands) {
+            found = climb(&demands, options, control)?;
+        }
+        let place = |i: usize| (part.first + i) % total;
+        for i in 0..part.polygon.segments() {
+            self.pieces[place(i)] = found.pieces(&demands, i);
+        }
+        self.method = self.method.max(found.method);
+        self.tangent_scale = tangent_scale(&part.polygon, &found);
+        self.energy += energy_of(&demands, &found.nodes, options.energy);
+        self.energy_cubic += energy_of(&demands, &found.plain, options.energy);
+        self.active.extend(found.active.iter().map(|&(criterion, i)| (criterion, place(i))));
+        Ok(())
     }
 }
 
@@ -236,9 +316,9 @@ fn tangent_scale(polygon: &DataPolygon, found: &Found) -> [f64; 2] {
 }
 
 /// The criteria that hold the curve back, each with its segments.
-fn active(found: &Found) -> Vec<(Criterion, Vec<usize>)> {
+fn active(all: &[(Criterion, usize)]) -> Vec<(Criterion, Vec<usize>)> {
     let of = |criterion: Criterion| {
-        let own = found.active.iter().filter(|active| active.0 == criterion);
+        let own = all.iter().filter(|active| active.0 == criterion);
         let mut segments: Vec<usize> = own.map(|active| active.1).collect();
         segments.sort_unstable();
         (criterion, segments)

@@ -45,7 +45,8 @@ pub(crate) fn start(demands: &Demands<'_>, node: usize, scales: Scales) -> Node 
     let p = u.cross(v);
     let sine = p.length();
     if sine <= demands.checker.tolerances().zero || t.length() < 1e-6 {
-        return Node { q: t / t.length().max(1e-6) * (scales.handle * speed), r: DVec3::ZERO };
+        let t = demands.constraints.direction(node).unwrap_or(t / t.length().max(1e-6));
+        return Node { q: t * (scales.handle * speed), r: DVec3::ZERO };
     }
     let normal = p / sine;
     let limits = sides.into_iter().flatten().map(|i| tilt_limit(demands, i));
@@ -55,16 +56,42 @@ pub(crate) fn start(demands: &Demands<'_>, node: usize, scales: Scales) -> Node 
     let (sum, difference) = (u + v, v - u);
     let bisector = sum.normalize_or_zero();
     let across = normal.cross(bisector);
-    let x = bisector * (e * (s0 + s1) / sum.length().max(1e-6))
-        + across * (e * (s1 - s0) / difference.length().max(1e-300));
-    t -= normal * x.dot(t);
-    t = t.normalize();
+    let tilted = |[a, b]: [f64; 2]| {
+        bisector * ((a + b) / sum.length().max(1e-6))
+            + across * ((b - a) / difference.length().max(1e-300))
+    };
+    let mut x = tilted([e * s0, e * s1]);
+    match demands.constraints.direction(node) {
+        None => t = (t - normal * x.dot(t)).normalize(),
+        Some(direction) => {
+            t = direction;
+            x = tilted(tilts(t, [u, v], normal, [s0, s1], e));
+        }
+    }
     let r = (normal + x).cross(t).normalize();
     let natural = 2.0 * sine / (h0 + h1);
     Node {
         q: t * (scales.handle * speed),
         r: r * (scales.handle * scales.curvature * natural * speed * speed),
     }
+}
+
+/// `[B·u, B·v]` of an osculating plane that holds a given tangent, with the signs asked for as far as can be:
+/// with `t = αu + βv + γP̂` it has to be `α B·u + β B·v = −γ`. Near `e` in size.
+fn tilts(t: DVec3, [u, v]: [DVec3; 2], normal: DVec3, signs: [f64; 2], e: f64) -> [f64; 2] {
+    let out = t.dot(normal);
+    let flat = t - normal * out;
+    let det = u.cross(v).dot(normal);
+    let [a, b] = [flat.cross(v).dot(normal) / det, u.cross(flat).dot(normal) / det];
+    let [mut x, mut y] = signs.map(|sign| sign * e);
+    // What is missing goes to the side whose sign it has, or to that of which nothing is asked.
+    let missing = -out - a * x - b * y;
+    if a > 0.0 && (signs[0] * missing > 0.0 || signs[0] == 0.0) {
+        x += missing / a;
+    } else {
+        y += missing / b.max(1e-6);
+    }
+    [x, y]
 }
 
 /// The segments before and after a node.
@@ -102,7 +129,7 @@ mod tests {
     use shapespline_geometry::{Boundary, Parametrization};
 
     use super::*;
-    use crate::{rows::Rules, segment::Units, solve::restart_all, window::Window};
+    use crate::{Constraints, rows::Rules, segment::Units, solve::restart_all, window::Window};
 
     /// Points of a walk in space or in the plane, lengths over one decade.
     fn walk(seed: u64, planar: bool) -> DataPolygon {
@@ -128,7 +155,8 @@ mod tests {
         for seed in 0..60 {
             let polygon = walk(seed, seed % 2 == 0);
             let checker = Checker::new(&polygon, Criteria::ALL, Tolerances::default());
-            let demands = Demands { checker: &checker, units: Units::of(&polygon) };
+            let (units, constraints) = (Units::of(&polygon), &Constraints::default());
+            let demands = Demands { checker: &checker, units, constraints };
             let nodes = vec![Node::default(); polygon.nodes()];
             let rules = Rules { cones: [0.19, 0.19], exact_middles: false };
             let mut chain = Window { start: 0, count: nodes.len() }.chain(&demands, &nodes, rules);

@@ -11,6 +11,9 @@ use crate::{
 /// further one: beyond these the plain cubic would change by less than 1e−4.
 pub(crate) const BESIDE: usize = 8;
 
+/// The least speed along a direction that is asked for, over that of the plain cubic.
+const SLOWEST: f64 = 0.3;
+
 /// Neighbouring nodes that are free.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Window {
@@ -81,8 +84,18 @@ impl Window {
             match (inside, end && polygon.tangents().is_some()) {
                 (false, _) => Freedom::Held,
                 (true, true) => Freedom::TangentHeld,
-                (true, false) => Freedom::Free,
+                (true, false) => {
+                    demands.constraints.direction(i).map_or(Freedom::Free, Freedom::Along)
+                }
             }
+        };
+        // Where a direction is asked for the curve begins with it.
+        let node = |i: usize| match held(i) {
+            Freedom::Along(t) => {
+                let Node { q, r } = nodes[i];
+                Node { q: t * q.dot(t).max(SLOWEST * q.length()), r }
+            }
+            _ => nodes[i],
         };
         let index = |j: usize| (first + j) % total;
         // Of a closed curve the last segment ends at the first node.
@@ -90,7 +103,7 @@ impl Window {
         let segments = if ring { count } else { count - 1 };
         Chain::new(
             (0..segments).map(|j| demands.segment((first + j) % n)).collect(),
-            (0..count).map(|j| nodes[index(j)]).collect(),
+            (0..count).map(|j| node(index(j))).collect(),
             (0..count).map(|j| held(index(j))).collect(),
             first,
             rules,

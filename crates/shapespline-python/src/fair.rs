@@ -126,7 +126,8 @@ impl FairSpline {
         let input = CurveInput::new(points, parameters, boundary, closed, repeated)?;
         let criteria = criteria.or(Criteria::OF_FITS);
         let tolerances = tolerances(resolution, coplanarity, collinearity, tolerance)?;
-        let options = FairOptions { criteria, tolerances, energy, max_iterations };
+        let options =
+            FairOptions { criteria, tolerances, energy, max_iterations, ..FairOptions::default() };
         let base =
             preserve_fair(py, input, &options, &Request::without_strategy(criteria, tolerances))?;
         Ok(PyClassInitializer::from(base).add_subclass(Self))

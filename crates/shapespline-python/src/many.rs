@@ -140,7 +140,13 @@ pub(crate) fn _fit_many<'py>(
     };
     match method {
         Method::Fair => run(py, rows, &request, |polygon, map, ask| {
-            let options = FairOptions { criteria, tolerances, energy, max_iterations };
+            let options = FairOptions {
+                criteria,
+                tolerances,
+                energy,
+                max_iterations,
+                ..FairOptions::default()
+            };
             fit_fair(polygon, map, repeated, &options, &request, ask)
         }),
         Method::Nu => run(py, rows, &request, |polygon, map, ask| {

@@ -337,10 +337,10 @@ fn a_monitor_sees_the_steps_and_can_stop_them() {
     });
     let fit = fit.unwrap();
     assert_eq!((seen, fit.diagnostics.status), (5, Status::Interrupted));
-    let few = FairOptions { max_iterations: Some(3), ..options };
+    let few = FairOptions { max_iterations: Some(3), ..options.clone() };
     let fit = FairSpline::fit(hiking_track(), &few).unwrap();
     assert_eq!((fit.diagnostics.iterations, fit.diagnostics.status), (3, Status::IterationLimit));
-    let none = FairOptions { max_iterations: Some(0), ..options };
+    let none = FairOptions { max_iterations: Some(0), ..options.clone() };
     let error = FairSpline::fit(readme(), &none).unwrap_err().to_string();
     assert!(error.contains("max_iterations"), "{error}");
 }

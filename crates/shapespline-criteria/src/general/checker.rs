@@ -112,6 +112,12 @@ impl<'a> CurveChecker<'a> {
         Ok(checked)
     }
 
+    /// Asks for nothing at some nodes: where the curve is to have corners.
+    #[must_use]
+    pub fn with_free_nodes(self, nodes: &[usize]) -> Self {
+        Self { checker: self.checker.with_free_nodes(nodes), ..self }
+    }
+
     /// The criteria's own checker: what the polygon calls for.
     #[must_use]
     pub fn checker(&self) -> &Checker<'a> {
