@@ -102,3 +102,66 @@ def test_longer_handles_break_the_shape():
     factors = 1 - curve.tension
     factors[limited] = np.minimum(1.0, factors[limited] * 1.01)
     assert not case.fit(tension=1 - factors).check().ok
+
+
+@every_case
+@pytest.mark.parametrize("continuity", ["C1", "G1"])
+def test_directions_of_both_kinds_keep_the_shape(case, continuity):
+    balanced, local = (
+        case.preserve(continuity=continuity, directions=d) for d in ("balanced", "parametrization")
+    )
+    assert balanced.check().ok
+    assert local.check().ok
+    assert case.preserve(continuity=continuity).bezier.tobytes() == balanced.bezier.tobytes()
+
+
+@pytest.mark.parametrize("case", cases.shared(), ids=str)
+@pytest.mark.parametrize("continuity", ["C1", "G1"])
+def test_balanced_directions_bend_no_sharper_on_the_shared_data(case, continuity):
+    case = replace(case, family=ss.CatmullRom)
+    balanced, local = (
+        ss.fairness(case.preserve(continuity=continuity, directions=directions)).max_curvature
+        for directions in ("balanced", "parametrization")
+    )
+    assert balanced <= local * 1.01
+
+
+def test_tangents_of_the_parametrisation_are_kept_where_asked(rng):
+    points = polygons.random_walk(rng, 12)
+    plain, local = (
+        fit(points, **options).tangents
+        for fit, options in [
+            (ss.CatmullRom, {}),
+            (ss.CatmullRom.shape_preserving, {"directions": "parametrization"}),
+        ]
+    )
+    unit = [t / np.linalg.norm(t, axis=1, keepdims=True) for t in (plain, local)]
+    np.testing.assert_allclose(unit[1], unit[0], atol=1e-12)
+
+
+def test_balanced_angles_are_more_alike(rng):
+    """The two angles between tangents and chord of a segment, in the plane."""
+    points = polygons.random_walk(rng, 30, 2)
+    unlike = []
+    for directions in ("balanced", "parametrization"):
+        curve = ss.CatmullRom.shape_preserving(points, directions=directions)
+        chord, tangents = np.diff(points, axis=0), curve.tangents
+
+        def angle(u, v):
+            cross = u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]
+            return np.abs(np.arctan2(cross, np.sum(u * v, axis=1)))
+
+        start, end = angle(tangents[1:-2], chord[1:-1]), angle(tangents[2:-1], chord[1:-1])
+        unlike.append(np.sum(np.log(start / end) ** 2))
+    assert unlike[0] < 0.5 * unlike[1]
+
+
+@pytest.mark.parametrize(("word", "error"), [("straight", ValueError), (1, TypeError)])
+def test_other_directions_are_refused_by_name(word, error, rng):
+    points = polygons.random_walk(rng, 8)
+    with pytest.raises(error, match="directions"):
+        ss.CatmullRom.shape_preserving(points, directions=word)
+    with pytest.raises(error, match="directions"):
+        ss.fit_many(points, [0, 8], method="catmull-rom", directions=word)
+    with pytest.raises(TypeError, match="directions"):
+        ss.fit_many(points, [0, 8], method="nu", directions="balanced")

@@ -66,6 +66,7 @@ _Boundary = Literal["zero-curvature", "natural", "periodic", "circular"]
 _Strategy = Literal["nussp", "growth", "fairest", "reduction"]
 _Continuity = Literal["C1", "G1"]
 _Energy = Literal["parametric", "bending"]
+_Directions = Literal["balanced", "parametrization"]
 _Parametrization = Literal["uniform", "chordal", "centripetal"]
 # An array or nested lists: what gives an array back where one number gives a number.
 _Many = NDArray[np.generic] | Sequence[float] | Sequence[Sequence[float]]
@@ -324,6 +325,7 @@ class CatmullRom(SpaceCurve):
         criteria: _Criterion | Iterable[_Criterion] | None = None,
         safety: float = 0.9,
         continuity: _Continuity = "C1",
+        directions: _Directions = "balanced",
         resolution: float = 0.0,
         coplanarity: float = 0.2,
         collinearity: float = 0.2,
@@ -471,7 +473,7 @@ class Diagnostics:
 @final
 class SearchStep:
     @property
-    def phase(self) -> Literal["raise", "relax", "verify"]: ...
+    def phase(self) -> Literal["raise", "lower", "verify"]: ...
     @property
     def violations(self) -> int: ...
     @property
@@ -503,6 +505,7 @@ def _fit_many(
     max_iterations: int | None,
     safety: float,
     continuity: _Continuity,
+    directions: _Directions,
     tension: float,
     tangent_scale: float,
     energy: str,

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
         _Boundary,
         _Continuity,
         _Criterion,
+        _Directions,
         _Energy,
         _Parametrization,
         _Strategy,
@@ -124,6 +125,7 @@ def fit_many(
     energy: _Energy | None = None,
     safety: float | None = None,
     continuity: _Continuity | None = None,
+    directions: _Directions | None = None,
     tension: float | None = None,
     tangent_scale: float | None = None,
 ) -> Fits:
@@ -170,6 +172,8 @@ def fit_many(
         As for ``CatmullRom.shape_preserving``.
     continuity : {"C1", "G1"}, optional
         As for `CatmullRom`.
+    directions : {"balanced", "parametrization"}, optional
+        As for ``CatmullRom.shape_preserving``.
     tension : float, optional
         With ``shape_preserving=False``: that of every point of a `NuSpline` or `CatmullRom`.
     tangent_scale : float, optional
@@ -224,6 +228,7 @@ def fit_many(
         "energy": energy,
         "safety": safety,
         "continuity": continuity,
+        "directions": directions,
         "tension": tension,
         "tangent_scale": tangent_scale,
     }

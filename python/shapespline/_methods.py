@@ -58,7 +58,7 @@ METHODS: Mapping[str, Method] = MappingProxyType(
         "tension": Method(TensionSpline, _SEARCH, {"tangent_scale": 1.0}),
         "catmull-rom": Method(
             CatmullRom,
-            {**_CHECK, "safety": 0.9, "continuity": "C1"},
+            {**_CHECK, "safety": 0.9, "continuity": "C1", "directions": "balanced"},
             {"tension": 0.0, "continuity": "C1"},
             "centripetal",
         ),

@@ -194,7 +194,12 @@ def add_fit_options(parser: argparse.ArgumentParser, methods: Iterable[str]) -> 
         help="fair: what is minimised (default: parametric)",
     )
     curve.add_argument(
-        "--continuity", choices=["C1", "G1"], help="catmull-rom: one handle a point, or two"
+        "--continuity", choices=["C1", "G1"], help="catmull-rom: one handle scale per point, or two"
+    )
+    curve.add_argument(
+        "--directions",
+        choices=["balanced", "parametrization"],
+        help="catmull-rom: tangents of a shape-preserving curve (default: balanced)",
     )
 
     function = parser.add_argument_group("functions (quartic, quintic)")

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
         _Boundary,
         _Continuity,
         _Criterion,
+        _Directions,
         _Energy,
         _Parametrization,
         _Strategy,
@@ -98,6 +99,7 @@ def fit(
     tolerance: float | None = ...,
     safety: float | None = ...,
     continuity: _Continuity | None = ...,
+    directions: _Directions | None = ...,
 ) -> CatmullRom: ...
 def fit(
     points: ArrayLike,
@@ -118,6 +120,7 @@ def fit(
     step: float | None = None,
     safety: float | None = None,
     continuity: _Continuity | None = None,
+    directions: _Directions | None = None,
 ) -> SpaceCurve:
     """Fit a curve through points that keeps their shape.
 
@@ -149,6 +152,8 @@ def fit(
         Method ``"catmull-rom"``: as for ``CatmullRom.shape_preserving``.
     continuity : {"C1", "G1"}, optional
         Method ``"catmull-rom"``: as for `CatmullRom`.
+    directions : {"balanced", "parametrization"}, optional
+        Method ``"catmull-rom"``: as for ``CatmullRom.shape_preserving``.
 
     Returns
     -------
@@ -197,6 +202,7 @@ def fit(
         "step": step,
         "safety": safety,
         "continuity": continuity,
+        "directions": directions,
     }
     entry = method_of(method)
     given = given_options(method, options, entry.options)

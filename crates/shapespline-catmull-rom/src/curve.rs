@@ -25,6 +25,19 @@ pub enum Continuity {
     G1,
 }
 
+/// Which tangent directions, strictly between the chords, a shape-preserving curve has.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
+pub enum Directions {
+    /// Those that make the two angles of each segment with its chord alike, so that neither handle
+    /// has to be short. One tridiagonal system per step of Gauss and Newton's method.
+    #[default]
+    Balanced,
+    /// Those of the parametrisation, as without tension: local.
+    Parametrization,
+}
+
 /// What to keep, and how closely to go to the bounds.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HandleOptions {
@@ -36,6 +49,8 @@ pub struct HandleOptions {
     pub safety: f64,
     /// Whether the two handles at a node have one scale.
     pub continuity: Continuity,
+    /// The directions of the tangents.
+    pub directions: Directions,
 }
 
 impl Default for HandleOptions {
@@ -45,6 +60,7 @@ impl Default for HandleOptions {
             tolerances: Tolerances::default(),
             safety: 0.9,
             continuity: Continuity::C1,
+            directions: Directions::default(),
         }
     }
 }
@@ -141,7 +157,14 @@ impl CatmullRom {
     ) -> Result<Fit<Self>, FitError> {
         options.validate()?;
         let HandleOptions { criteria, tolerances, continuity, .. } = *options;
-        let Checked { mut legs, mut factors, found } = limited(&polygon, options);
+        let mut checked = limited(&polygon, options)?;
+        if !checked.found.faults.is_empty() && options.directions == Directions::Balanced {
+            // Planes known only to the tolerance: shorter handles mend them along the
+            // parametrisation's directions, along others perhaps not.
+            let local = HandleOptions { directions: Directions::Parametrization, ..*options };
+            checked = limited(&polygon, &local)?;
+        }
+        let Checked { mut legs, mut factors, found } = checked;
         let mut checked = !found.cramped;
         let (mut outcome, report) = if found.faults.is_empty() {
             (Outcome::solved(), ShapeReport::clean(legs.len(), criteria, found.applicable))

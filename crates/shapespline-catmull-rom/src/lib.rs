@@ -32,8 +32,14 @@
 //!   to the handles is that a split one inflects away from the nodes, and planes known only to the
 //!   tolerance; there the tension search shortens them further ([`shapespline_search`]).
 //!
-//! **Cost.** O(N), local: a point moves the curve over two segments to either side, or four where handles
-//! are shortened, and shape is kept by a choice at the two nodes of each segment.
+//! **Directions.** The bounds ask of `t_i` only that it lies strictly between the chords.
+//! [`Directions::Balanced`], the default of shape-preserving curves, splits the turning angle at each node
+//! so that the two angles of a segment with its chord become alike, and neither handle has to be short;
+//! [`Directions::Parametrization`] keeps the tangents of the definition.
+//!
+//! **Cost.** O(N). With the tangents of the definition the curve is local: a point moves the curve over two segments to either side, or four where handles
+//! are shortened, and shape is kept by a choice at the two nodes of each segment. Balanced directions take some
+//! ten tridiagonal systems.
 //!
 //! Source: R. S. Gautam, *Shape preservation behavior of spline curves* ("paper 002"), section 14; the
 //! magnitudes are ours.
@@ -57,6 +63,7 @@
 //! # Ok::<(), shapespline_catmull_rom::FitError>(())
 //! ```
 
+mod balanced;
 mod bounds;
 mod curve;
 mod handles;
@@ -64,7 +71,7 @@ mod parts;
 mod stretch;
 mod tangents;
 
-pub use curve::{CatmullRom, Continuity, HandleOptions};
+pub use curve::{CatmullRom, Continuity, Directions, HandleOptions};
 pub use shapespline_search::{Fit, FitError, Interpolant, Status, Tension};
 
 /// The examples of the README are run as tests.

@@ -2,11 +2,12 @@
 //! cache. Everything is local: stretches know nothing of each other.
 
 use rayon::prelude::*;
-use shapespline_criteria::StretchChecker;
+use shapespline_banded::SolveError;
+use shapespline_criteria::{Calls, StretchChecker};
 use shapespline_geometry::{DVec3, DataPolygon, Stretch};
 
 use crate::{
-    HandleOptions,
+    Directions, HandleOptions, balanced,
     stretch::{Found, StretchHandles},
 };
 
@@ -25,8 +26,22 @@ pub(crate) struct Checked {
 }
 
 /// The largest handles within the bounds, checked. Cost O(N), on all threads for long curves.
-pub(crate) fn limited(polygon: &DataPolygon, options: &HandleOptions) -> Checked {
+///
+/// # Errors
+/// Balanced directions of angles that f64 cannot hold.
+pub(crate) fn limited(
+    polygon: &DataPolygon,
+    options: &HandleOptions,
+) -> Result<Checked, SolveError> {
     let n = polygon.segments();
+    let tangents = match options.directions {
+        Directions::Balanced => {
+            let planar = Calls::is_planar(polygon, &options.tolerances);
+            Some(balanced::tangents(polygon, options.tolerances.zero, planar)?)
+        }
+        Directions::Parametrization => None,
+    };
+    let tangents = tangents.as_deref();
     let checker = StretchChecker::new(polygon, options.criteria, options.tolerances);
     // Fresh memory from the system is zero: nothing is written twice.
     let mut legs: Vec<[DVec3; 2]> = bytemuck::zeroed_vec(n);
@@ -41,7 +56,7 @@ pub(crate) fn limited(polygon: &DataPolygon, options: &HandleOptions) -> Checked
         for (k, out) in stretches.enumerate() {
             let first = start + k * Stretch::OWN;
             let own = first..first + out.0.len();
-            last = handles.make(polygon, &checker, options, own, out, &mut found);
+            last = handles.make((polygon, tangents), &checker, options, own, out, &mut found);
         }
         (found, last)
     };
@@ -59,5 +74,5 @@ pub(crate) fn limited(polygon: &DataPolygon, options: &HandleOptions) -> Checked
     };
     // An open curve has one more node, its end.
     factors[n..].fill(last);
-    Checked { legs, factors, found }
+    Ok(Checked { legs, factors, found })
 }

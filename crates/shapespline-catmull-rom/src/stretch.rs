@@ -76,9 +76,11 @@ impl Found {
 impl StretchHandles {
     /// The handles of some segments, at most [`Stretch::OWN`], into `legs`; the smaller factor at the
     /// first node of each into `factors`. Returns that at the last node.
+    ///
+    /// `tangents`: one per point, or those of the parametrisation.
     pub(crate) fn make(
         &mut self,
-        polygon: &DataPolygon,
+        (polygon, tangents): (&DataPolygon, Option<&[DVec3]>),
         checker: &StretchChecker<'_>,
         options: &HandleOptions,
         own: Range<usize>,
@@ -87,7 +89,7 @@ impl StretchHandles {
     ) -> f64 {
         self.stretch.load(polygon, own);
         checker.calls(&self.stretch, &mut self.calls);
-        self.take_full_legs(polygon);
+        self.take_full_legs(polygon, tangents);
         self.limit(polygon, options);
         self.join(options.continuity);
         self.shorten(polygon);
@@ -111,12 +113,18 @@ impl StretchHandles {
 
     /// The full legs: a third of the spacing along the tangents at the nodes. A leg at an end of zero
     /// curvature is zero here.
-    fn take_full_legs(&mut self, polygon: &DataPolygon) {
+    fn take_full_legs(&mut self, polygon: &DataPolygon, given: Option<&[DVec3]>) {
         let Self { stretch, tangents, first, last, .. } = self;
         let (chords, spacings) = (stretch.chords(), stretch.spacings());
-        for j in 0..stretch.less(1) {
-            let around = [chords.get(j), chords.get(j + 1)];
-            tangents.set(j, tangent_between(around, [spacings[j], spacings[j + 1]]));
+        if let Some(given) = given {
+            for j in 0..stretch.less(1) {
+                tangents.set(j, given[stretch.segment(polygon, j) + 1]);
+            }
+        } else {
+            for j in 0..stretch.less(1) {
+                let around = [chords.get(j), chords.get(j + 1)];
+                tangents.set(j, tangent_between(around, [spacings[j], spacings[j + 1]]));
+            }
         }
         for (end, node) in ends(stretch, polygon).into_iter().zip([0, polygon.segments()]) {
             if let Some(j) = end {
@@ -253,7 +261,7 @@ mod tests {
         let (mut found, mut last) = (Found::default(), 0.0);
         for (k, out) in legs.chunks_mut(width).zip(factors.chunks_mut(width)).enumerate() {
             let own = k * width..k * width + out.0.len();
-            last = handles.make(polygon, &checker, options, own, out, &mut found);
+            last = handles.make((polygon, None), &checker, options, own, out, &mut found);
         }
         factors.push(last);
         (legs, factors, found)

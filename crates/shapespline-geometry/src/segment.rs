@@ -2,6 +2,8 @@
 
 use glam::DVec3;
 
+use crate::quadrature::integrate;
+
 /// Cubic Bézier segment, held as its first point and its legs `a, b, c` (differences of neighbouring
 /// Bézier points): all shape questions depend on the legs alone.
 ///
@@ -77,6 +79,21 @@ impl CubicSegment {
     #[must_use]
     pub fn determinant(&self) -> f64 {
         self.a.cross(self.b).dot(self.c)
+    }
+
+    /// `∫κ² ds`, by adaptive quadrature to about `accuracy` of itself; infinite at a cusp.
+    ///
+    /// Peaks of curvature at the ends are seen however narrow they are, those inside as far as halving
+    /// meets them: for a guarantee see [`fairness`](crate::fairness()).
+    #[must_use]
+    pub fn bending(&self, accuracy: f64) -> f64 {
+        let density = |t: f64| {
+            let [d1, d2, _] = self.derivatives(t);
+            let speed = d1.length();
+            d1.cross(d2).length_squared() / (speed * speed * speed * speed * speed)
+        };
+        let negligible = 1e-3 * accuracy / (self.a + self.b + self.c).length();
+        integrate(&density, [0.0, 1.0], accuracy, negligible)
     }
 
     /// The segment run through backwards.

@@ -2,7 +2,7 @@
 
 use pyo3::{PyClassInitializer, prelude::*, types::PyType};
 use shapespline::{
-    catmull_rom::{self, Continuity, HandleOptions},
+    catmull_rom::{self, Continuity, Directions, HandleOptions},
     criteria::Criteria,
     geometry::Repeated,
 };
@@ -132,6 +132,10 @@ impl CatmullRom {
     /// continuity : {"C1", "G1"}
     ///     ``"C1"`` takes the smaller of the two scales at a point for both handles, ``"G1"`` lets each
     ///     segment have its own.
+    /// directions : {"balanced", "parametrization"}
+    ///     ``"balanced"`` splits the turning angle at each point so that the two angles of a segment with
+    ///     its chord become alike, which keeps handles long; ``"parametrization"`` takes the tangents of
+    ///     the curve without tension, and is local.
     /// resolution : float
     ///     Accuracy of the points, in their units: what a move of the points by that much could undo is not
     ///     asked for. Default 0.
@@ -154,9 +158,10 @@ impl CatmullRom {
     ///
     /// Notes
     /// -----
-    /// Gautam, *Shape preservation behavior of spline curves*, section 14, gives the directions; the
-    /// largest magnitudes, in closed form, are this library's. Torsion holds for handles of any length.
-    /// Local; cost O(n), on all threads for long curves.
+    /// Gautam, *Shape preservation behavior of spline curves*, section 14, shows that every direction
+    /// strictly between the chords will do; the balanced ones and the largest magnitudes, in closed form,
+    /// are this library's. Torsion holds for handles of any length. Cost O(n), on all threads for long
+    /// curves; balanced directions take some ten tridiagonal systems.
     ///
     /// Examples
     /// --------
@@ -179,12 +184,13 @@ impl CatmullRom {
             criteria=CriteriaNames::DEFAULT,
             safety=0.9,
             continuity=Continuity::C1,
+            directions=Directions::Balanced,
             resolution=0.0,
             coplanarity=0.2,
             collinearity=0.2,
             tolerance=1e-9,
         ),
-        text_signature = "($type, points, parameters='centripetal', *, boundary='natural', closed=False, repeated='error', criteria=None, safety=0.9, continuity='C1', resolution=0.0, coplanarity=0.2, \
+        text_signature = "($type, points, parameters='centripetal', *, boundary='natural', closed=False, repeated='error', criteria=None, safety=0.9, continuity='C1', directions='balanced', resolution=0.0, coplanarity=0.2, \
                           collinearity=0.2, tolerance=1e-9)"
     )]
     // One argument a keyword: this is the signature that users see.
@@ -199,6 +205,7 @@ impl CatmullRom {
         criteria: CriteriaNames,
         #[pyo3(from_py_with = options::safety)] safety: f64,
         #[pyo3(from_py_with = options::continuity)] continuity: Continuity,
+        #[pyo3(from_py_with = options::directions)] directions: Directions,
         #[pyo3(from_py_with = options::resolution)] resolution: f64,
         #[pyo3(from_py_with = options::coplanarity)] coplanarity: f64,
         #[pyo3(from_py_with = options::collinearity)] collinearity: f64,
@@ -209,7 +216,7 @@ impl CatmullRom {
             criteria.or(Criteria::OF_FITS),
             tolerances(resolution, coplanarity, collinearity, tolerance)?,
         );
-        let options = HandleOptions { criteria, tolerances, safety, continuity };
+        let options = HandleOptions { criteria, tolerances, safety, continuity, directions };
         preserve(
             class.py(),
             input,

@@ -42,7 +42,7 @@ pub(crate) struct Search {
 /// solves : int
 ///     Solves of the system of tangents, complete or in part.
 /// relaxations : int
-///     Rounds in which tension was lowered again (``strategy="fairest"``).
+///     How often tensions were tried to be lowered again (``strategy="fairest"``).
 /// nodes_changed : int
 ///     Nodes whose tension is not zero in the end.
 /// dropped : tuple of int
@@ -53,7 +53,7 @@ pub(crate) struct Search {
 /// >>> import shapespline as ss
 /// >>> points = [[0, 0, 0], [4, 0, 0], [4.5, 0.5, 0], [4.5, 1, 0.5], [4.5, 1, 5]]
 /// >>> ss.NuSpline.shape_preserving(points, "uniform").diagnostics
-/// Diagnostics(status='solved', iterations=..., solves=..., relaxations=..., nodes_changed=5)
+/// Diagnostics(status='solved', iterations=..., solves=..., relaxations=..., nodes_changed=2)
 #[pyclass(module = "shapespline", frozen, eq, hash, weakref)]
 #[derive(Debug, Clone, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
 pub(crate) struct Diagnostics {
@@ -67,7 +67,7 @@ pub(crate) struct Diagnostics {
     /// Solves of the system of tangents, complete or in part.
     #[pyo3(get)]
     solves: usize,
-    /// Rounds in which tension was lowered again.
+    /// How often tensions were tried to be lowered again.
     #[pyo3(get)]
     relaxations: usize,
     /// Nodes whose tension is not zero in the end.
@@ -132,7 +132,7 @@ impl Diagnostics {
 /// Attributes
 /// ----------
 /// phase : str
-///     ``"raise"``: tension was raised where criteria failed; ``"relax"``: runs of tension were
+///     ``"raise"``: tension was raised where criteria failed; ``"lower"``: tensions were
 ///     lowered; ``"verify"``: everything was solved and checked anew.
 /// violations : int
 ///     Segments that violated a criterion when the step began.
@@ -148,7 +148,7 @@ impl Diagnostics {
 #[pyclass(module = "shapespline", frozen, get_all, eq, hash, weakref)]
 #[derive(Debug, Clone, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
 pub(crate) struct SearchStep {
-    /// ``"raise"``, ``"relax"`` or ``"verify"``.
+    /// ``"raise"``, ``"lower"`` or ``"verify"``.
     phase: String,
     /// Segments that violated a criterion when the step began.
     violations: usize,
@@ -160,7 +160,7 @@ impl From<&search::Step> for SearchStep {
     fn from(step: &search::Step) -> Self {
         let phase = match step.phase {
             Phase::Raise => "raise",
-            Phase::Relax => "relax",
+            Phase::Lower => "lower",
             Phase::Verify => "verify",
         };
         Self { phase: phase.to_owned(), violations: step.violated, changed: step.changed }

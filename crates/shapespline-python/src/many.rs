@@ -10,7 +10,7 @@ use pyo3::{
     types::{PyDict, PyTuple},
 };
 use shapespline::{
-    catmull_rom::{self, Continuity, HandleOptions},
+    catmull_rom::{self, Continuity, Directions, HandleOptions},
     fair::{Energy, FairOptions},
     geometry::{Boundary, DVec3, DataPolygon, InputMap, Parametrization, Ragged, Repeated},
     nu::{self, Strategy},
@@ -119,6 +119,7 @@ pub(crate) fn _fit_many<'py>(
     #[pyo3(from_py_with = options::max_iterations)] max_iterations: Option<usize>,
     #[pyo3(from_py_with = options::safety)] safety: f64,
     #[pyo3(from_py_with = options::continuity)] continuity: Continuity,
+    #[pyo3(from_py_with = options::directions)] directions: Directions,
     #[pyo3(from_py_with = options::tension)] tension: f64,
     #[pyo3(from_py_with = options::tangent_scale)] tangent_scale: f64,
     #[pyo3(from_py_with = options::energy)] energy: Energy,
@@ -172,7 +173,7 @@ pub(crate) fn _fit_many<'py>(
                 return catmull_rom::CatmullRom::new(polygon, tension, continuity)
                     .map(|curve| Made::built(curve, map, repeated));
             }
-            let options = HandleOptions { criteria, tolerances, safety, continuity };
+            let options = HandleOptions { criteria, tolerances, safety, continuity, directions };
             catmull_rom::CatmullRom::shape_preserving_with(polygon, &options, &mut |_| ask())
                 .map(|fit| Made::searched(fit, &request, map, repeated))
         }),

@@ -123,9 +123,9 @@ impl NuSpline {
     ///     but the last two.
     /// strategy : {"fairest", "growth", "nussp", "reduction"}
     ///     ``"nussp"`` adds ``step`` (the published algorithm); ``"growth"`` doubles the tension;
-    ///     ``"fairest"`` doubles and then lowers every run of tension until none can be lowered by
-    ///     more than 1 % without breaking a criterion; ``"reduction"`` multiplies 1/(1 + ν) by
-    ///     ``step``.
+    ///     ``"fairest"`` doubles and then lowers every tension by itself until none can be lowered by
+    ///     more than some per cent without breaking a criterion or making the curve bend more;
+    ///     ``"reduction"`` multiplies 1/(1 + ν) by ``step``.
     /// step : float
     ///     What ``"nussp"`` adds, and what doubling starts from; positive.
     /// resolution : float
@@ -157,7 +157,7 @@ impl NuSpline {
     /// Notes
     /// -----
     /// Algorithm NUSSP, section 5.2 of Karavelas & Kaklis, Numer. Algorithms 23 (2000) 217–250, with
-    /// the index in (5.61)–(5.62) corrected; the growth and the relaxation are this library's. Cost: one
+    /// the index in (5.61)–(5.62) corrected; the growth and the lowering are this library's. Cost: one
     /// complete solve and check, O(n), and then what the violations need.
     ///
     /// Examples

@@ -2,7 +2,7 @@
 
 use pyo3::{exceptions::PyTypeError, prelude::*};
 use shapespline::{
-    catmull_rom::Continuity,
+    catmull_rom::{Continuity, Directions},
     criteria::{Criteria, Criterion, Tolerances},
     fair::Energy,
     geometry::{Boundary, Dimension, InputError, InputMap, Parametrization, Repeated, Side},
@@ -59,6 +59,12 @@ pub(crate) fn strategy(object: &Bound<'_, PyAny>) -> PyResult<Strategy> {
 pub(crate) fn continuity(object: &Bound<'_, PyAny>) -> PyResult<Continuity> {
     let kinds = [("C1", Continuity::C1), ("G1", Continuity::G1)];
     choose("continuity", &name("continuity", object)?, &kinds)
+}
+
+pub(crate) fn directions(object: &Bound<'_, PyAny>) -> PyResult<Directions> {
+    let kinds =
+        [("balanced", Directions::Balanced), ("parametrization", Directions::Parametrization)];
+    choose("directions", &name("directions", object)?, &kinds)
 }
 
 /// The name of what is continuous.

@@ -220,8 +220,9 @@ impl TensionSpline {
     ///     but the last two.
     /// strategy : {"fairest", "growth", "reduction", "nussp"}
     ///     ``"reduction"`` multiplies λ by ``step`` (the published algorithm); ``"growth"`` doubles
-    ///     1/λ − 1; ``"fairest"`` doubles and then lowers every run of tension until none can be lowered
-    ///     by more than 1 % without breaking a criterion; ``"nussp"`` adds ``step`` to 1/λ − 1.
+    ///     1/λ − 1; ``"fairest"`` doubles and then lowers every tension, on both sides of a point, by
+    ///     itself until none can be lowered by more than some per cent without breaking a criterion or
+    ///     making the curve bend more; ``"nussp"`` adds ``step`` to 1/λ − 1.
     /// step : float, optional
     ///     ρ in (0, 1) of ``"reduction"``, default 0.5; else what doubling starts from or what is added
     ///     to 1/λ − 1, default 0.25.
@@ -254,7 +255,7 @@ impl TensionSpline {
     /// Notes
     /// -----
     /// Section 4 of Manni 2001: near λ = 0 every criterion holds (Lemmas 4.1–4.3). The growth and the
-    /// relaxation are this library's. Cost: one complete solve and check, O(n), and then what the
+    /// lowering are this library's. Cost: one complete solve and check, O(n), and then what the
     /// violations need.
     ///
     /// Examples

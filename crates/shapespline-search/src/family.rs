@@ -4,7 +4,8 @@ use std::ops::Range;
 
 use shapespline_geometry::{DVec3, DataPolygon};
 
-/// A family of cubic interpolants of one data polygon with a tension `≥ 0` at each node.
+/// A family of cubic interpolants of one data polygon with a tension `≥ 0` at each node, or on each side
+/// of it.
 ///
 /// The search needs of it that growing tension draws the curve to the polygon in such a way that the
 /// shape criteria hold in the limit, and that tension at a node acts locally.
@@ -102,10 +103,15 @@ pub trait TensionFamily: Sync {
     /// Why a system could not be solved.
     type Error;
 
-    /// The tension at each distinct node (for closed data the last point is the first).
+    /// Tensions per node: one, or two where those before and after a node are independent. Raising
+    /// takes the two together, lowering each by itself.
+    const SIDES: usize = 1;
+
+    /// The tensions, [`Self::SIDES`] per distinct node (for closed data the last point is the first);
+    /// of two, the one before the node comes first. The one beyond an open end stays zero.
     fn tension(&self) -> &[f64];
 
-    /// Changes the tension at some nodes (ascending, each at most once), brings the tangents up to
+    /// Changes some tensions (by index, ascending, each at most once), brings the tangents up to
     /// date, and appends to `touched` ranges that cover every segment whose end legs changed.
     ///
     /// # Errors
@@ -116,8 +122,8 @@ pub trait TensionFamily: Sync {
         touched: &mut Vec<Range<usize>>,
     ) -> Result<(), Self::Error>;
 
-    /// Fills `legs` with the end legs of some segments as they would be, up to rounding, with other
-    /// tension at some nodes (as for [`TensionFamily::set_tension`]); nothing else changes. False where
+    /// Fills `legs` with the end legs of some segments as they would be, up to rounding, with some other
+    /// tensions (as for [`TensionFamily::set_tension`]); nothing else changes. False where
     /// that is not much cheaper than to set it.
     ///
     /// A search that does without is as good, and slower.

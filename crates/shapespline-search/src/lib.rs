@@ -1,10 +1,10 @@
-//! Automatic tension: raise it where a shape criterion fails, then relax it.
+//! Automatic tension: raise it where a shape criterion fails, then lower it.
 //!
 //! One search serves every family of splines with a tension at each node. A family says how tension
 //! makes end legs ([`TensionFamily`]); the search asks the criteria where the curve fails, raises the
 //! tensions that can mend it ([`Strategy`]), has the family solve again where they changed, checks
-//! what that touched, and repeats. `Fairest` then lowers every run of tension as far as the criteria
-//! allow, for growth overshoots.
+//! what that touched, and repeats. `Fairest` then lowers every tension by itself as far as the
+//! criteria allow, for growth overshoots.
 //!
 //! **Guarantee.** A search that ends with [`Status::Solved`] ends with a complete solve and a complete
 //! check that found no fault. Convergence rests on the asymptotic theorems of the family (paper 001,
@@ -23,18 +23,19 @@ mod doubts;
 mod error;
 mod family;
 mod fronts;
+mod group;
 mod interpolant;
 mod lower;
 mod many;
 mod options;
+mod order;
 mod outcome;
 mod pattern;
 mod raise;
-mod relax;
-mod runs;
 mod search;
 mod solved;
 mod state;
+mod surroundings;
 mod system;
 mod tension;
 mod work;

@@ -1,151 +1,197 @@
-//! Lowering the tension of some nodes by a common factor, found by bisection.
+//! Lowering tension again: growth overshoots, and what is not needed is given back.
 //!
-//! A look at the segments around the nodes tells of nearly every factor whether it breaks a criterion,
-//! at a fraction of what it costs to set the tensions. What looks find is set and checked as a whole: a
-//! factor that breaks a criterion anywhere is not taken.
+//! Every tension is lowered **by itself**, those at the sharpest ends of segments first, to the least value that keeps the shape while
+//! the others stay as they are; passes follow until nothing moves by more than some per cent. A change dies away
+//! as `2^{−k}` over `k` nodes, so each trial solves and checks a neighbourhood only, and a tension is
+//! tried again only if one within reach has moved.
+//!
+//! What ties ([`crate::order`]) is lowered together, so that symmetric data keep a symmetric curve whatever
+//! the direction in which points are numbered; only where that moves nothing, one after the other.
 
-use crate::{TensionFamily, runs::Run, state::State};
+use std::collections::HashSet;
 
-/// No nodes can be lowered by more than this part of their tension when relaxation ends.
-const RESOLUTION: f64 = 0.01;
+use crate::{
+    Phase, TensionFamily,
+    group::{Bending, Group, RESOLUTION, bent_by},
+    order::{Chords, mean_chord, sorted_groups},
+    state::State,
+    surroundings::Surroundings,
+};
 
-/// Nodes that hold each other back are lowered to this part of it.
-const FINE: f64 = RESOLUTION / 8.0;
+/// Nodes over which a change by [`RESOLUTION`] falls below what any criterion feels.
+const REACH: usize = 8;
 
-/// Nodes that are lowered together.
-pub(crate) struct Nodes {
-    /// The nodes, ascending, and the tension they began with.
-    full: Vec<(usize, f64)>,
-    /// Scratch: the same with a part of it.
-    scaled: Vec<(usize, f64)>,
-    /// The factor that is set.
-    set: f64,
-    /// The part of their tension that they are lowered to.
-    resolution: f64,
+/// The same for tensions that were left where they are for the curve's sake.
+const BESIDE: usize = 2;
+
+/// A tension that was lowered before is tried again if less by this part of itself seems to do: more than
+/// what was added so as not to be on the brink.
+const LEAST: f64 = 2.5 * RESOLUTION;
+
+/// Limit of passes: the last ones move a few tensions by some per cent each.
+const PASSES: usize = 24;
+
+/// Bending may grow by this part of itself: less is rounding, or the accuracy of the quadrature.
+const BENDING_SLACK: f64 = 1e-3;
+
+/// Groups tried between two calls of the monitor.
+const BETWEEN_CALLS: usize = 64;
+
+/// Lowers the tensions of a curve without faults as far as that leaves it without faults.
+///
+/// Where several tensions hold each other up, what is left depends on which is tried first. Two orders are
+/// tried, and the one after which the curve bends less is kept.
+pub(crate) fn lower<F: TensionFamily>(state: &mut State<'_, F>) -> Result<(), F::Error> {
+    let raised: Vec<usize> = positive(state.family.tension()).collect();
+    let (polygon, values) =
+        (state.windows.polygon(), |state: &State<'_, F>| -> Vec<(usize, f64)> {
+            raised.iter().map(|&k| (k, state.family.tension()[k])).collect()
+        });
+    let segments = bent_by(polygon, raised.iter().map(|k| k / F::SIDES));
+    let unit = mean_chord(polygon);
+    let mut descent = Descent::new(unit);
+    let full = values(state);
+    descent.lower(state, &raised, Chords::ShortFirst)?;
+    if state.stopped {
+        return Ok(());
+    }
+    let (first, bends) = (values(state), descent.bending.of(state, &segments));
+    state.return_to(&full)?;
+    descent.lower(state, &raised, Chords::LongFirst)?;
+    if descent.bending.of(state, &segments) > bends * (1.0 - BENDING_SLACK) {
+        state.return_to(&first)?;
+    }
+    Ok(())
 }
 
-impl Nodes {
-    /// The nodes of some runs, with the tension they have.
-    pub(crate) fn of<'r, F: TensionFamily>(
-        state: &State<'_, F>,
-        runs: impl IntoIterator<Item = &'r Run>,
-    ) -> Self {
-        let tension = state.family.tension();
-        let nodes = runs.into_iter().flat_map(|run| run.nodes(tension.len()));
-        let mut full: Vec<_> = nodes.map(|i| (i, tension[i])).collect();
-        full.sort_unstable_by_key(|node| node.0);
-        Self { scaled: Vec::with_capacity(full.len()), full, set: 1.0, resolution: RESOLUTION }
+/// What descents need to know.
+struct Descent {
+    /// The mean chord.
+    unit: f64,
+    around: Surroundings,
+    bending: Bending,
+    /// Tensions that stay where they are because less makes the curve bend more.
+    stay: HashSet<usize>,
+}
+
+impl Descent {
+    fn new(unit: f64) -> Self {
+        let (around, bending) = (Surroundings::default(), Bending::new(unit));
+        Self { unit, around, bending, stay: HashSet::new() }
     }
 
-    /// The same, to be lowered to a smaller part of their tension.
-    pub(crate) fn finely(self) -> Self {
-        Self { resolution: FINE, ..self }
+    /// Passes over the tensions that may still be lowered.
+    fn lower<F: TensionFamily>(
+        &mut self,
+        state: &mut State<'_, F>,
+        raised: &[usize],
+        chords: Chords,
+    ) -> Result<(), F::Error> {
+        let mut open = raised.to_vec();
+        self.stay.clear();
+        for pass in 0..PASSES {
+            let mut moved = Vec::new();
+            let (polygon, order) = (state.windows.polygon(), (chords, self.unit));
+            let groups = sorted_groups(&open, polygon, &*state.family, order, &mut self.around);
+            for (count, tied) in groups.iter().enumerate() {
+                self.lower_tied(state, tied, pass > 0, &mut moved)?;
+                if count % BETWEEN_CALLS == BETWEEN_CALLS - 1
+                    && state.wants_to_stop(Phase::Lower, moved.len())
+                {
+                    break;
+                }
+            }
+            state.log(Phase::Lower, 0, moved.len());
+            if state.stopped {
+                break;
+            }
+            if moved.is_empty() {
+                // Those that stayed may go after all, now that the others are where they are.
+                let stayed = self.stay.drain().filter(|&k| state.family.tension()[k] > 0.0);
+                let mut stayed: Vec<usize> = stayed.collect();
+                stayed.sort_unstable();
+                if stayed.is_empty() || open == stayed {
+                    break;
+                }
+                open = stayed;
+                continue;
+            }
+            moved.sort_unstable();
+            let (nodes, closed) = (state.windows.polygon().nodes(), state.closed());
+            let is_near = |k: &usize| {
+                let reach = if self.stay.contains(k) { BESIDE } else { REACH };
+                near(&moved, k / F::SIDES, reach, closed.then_some(nodes))
+            };
+            open = positive(state.family.tension()).filter(is_near).collect();
+        }
+        Ok(())
     }
 
-    /// The changes that bring the nodes to a factor of their tension.
-    fn at(&mut self, factor: f64) -> &[(usize, f64)] {
-        self.scaled.clear();
-        self.scaled.extend(self.full.iter().map(|&(i, tension)| (i, tension * factor)));
-        &self.scaled
+    /// Lowers tensions that tie, together or else one after the other, and adds the nodes that moved.
+    fn lower_tied<F: TensionFamily>(
+        &mut self,
+        state: &mut State<'_, F>,
+        tied: &[usize],
+        again: bool,
+        moved: &mut Vec<usize>,
+    ) -> Result<(), F::Error> {
+        if self.lower_group(state, tied, again)? {
+            moved.extend(tied.iter().map(|k| k / F::SIDES));
+        } else if tied.len() > 1 {
+            for k in tied {
+                if !state.stopped && self.lower_group(state, &[*k], again)? {
+                    moved.push(k / F::SIDES);
+                }
+            }
+        }
+        Ok(())
     }
 
-    /// Lowers the nodes as far as that leaves the curve without faults. Returns how many changed.
+    /// Lowers some tensions by one factor, unless the curve bends more without them: where directions are
+    /// wrong, less tension at one node can mean a sharper corner at the next. Returns whether they moved.
     ///
-    /// `all`: whether no other node has tension.
-    pub(crate) fn lower<F: TensionFamily>(
+    /// `again`: whether they were tried before, so that most likely they cannot be lowered.
+    fn lower_group<F: TensionFamily>(
         &mut self,
         state: &mut State<'_, F>,
-        all: bool,
-    ) -> Result<usize, F::Error> {
-        state.relaxations += 1;
-        // Looks go on for as long as they see what breaks.
-        let mut looks = true;
-        if !(all && state.plain_fails) {
-            // No tension at all comes first: growth often raises more nodes than it had to.
-            looks = state.seems_to_break(self.at(0.0)) == Some(true);
-            if !looks && self.keeps_shape(state, 0.0)? {
-                return Ok(self.full.len());
-            }
-        }
-        let (mut breaks, mut keeps) = (0.0, 1.0);
-        while keeps - breaks > self.resolution * keeps && !state.stopped {
-            let middle = 0.5 * (breaks + keeps);
-            let least = looks.then(|| self.bisect_by_looks(state, &mut breaks, keeps)).flatten();
-            let trial = least.unwrap_or(middle);
-            if trial <= breaks || trial >= keeps {
-                break;
-            }
-            if self.keeps_shape(state, trial)? {
-                keeps = trial;
-            } else {
-                (breaks, looks) = (trial, false);
-            }
-        }
-        self.return_to(state, keeps)?;
-        Ok(if keeps < 1.0 { self.full.len() } else { 0 })
-    }
-
-    /// Bisects between a factor that breaks a criterion and one that does not. The least factor that
-    /// seems to keep the shape, if looks tell.
-    fn bisect_by_looks<F: TensionFamily>(
-        &mut self,
-        state: &mut State<'_, F>,
-        breaks: &mut f64,
-        keeps: f64,
-    ) -> Option<f64> {
-        let mut seems = keeps;
-        while seems - *breaks > self.resolution * seems {
-            let trial = 0.5 * (*breaks + seems);
-            if trial <= *breaks || trial >= seems {
-                break;
-            }
-            if state.seems_to_break(self.at(trial))? {
-                *breaks = trial;
-            } else {
-                seems = trial;
-            }
-            // Where nothing seems to break, looks may see nothing.
-            if *breaks == 0.0 && 8.0 * seems <= keeps {
-                break;
-            }
-        }
-        Some(seems)
-    }
-
-    /// Whether the nodes could be lowered by the resolution, all others left as they are.
-    pub(crate) fn can_be_lowered<F: TensionFamily>(
-        &mut self,
-        state: &mut State<'_, F>,
+        indices: &[usize],
+        again: bool,
     ) -> Result<bool, F::Error> {
-        let factor = 1.0 - RESOLUTION;
-        if state.seems_to_break(self.at(factor)) == Some(true) {
+        let mut group = Group::of(indices, state.family.tension());
+        if again && state.seems_to_break(group.at(1.0 - LEAST)) == Some(true) {
             return Ok(false);
         }
-        let keeps = self.keeps_shape(state, factor)?;
-        self.return_to(state, 1.0)?;
-        Ok(keeps)
-    }
-
-    /// Sets a factor; whether that leaves the curve without faults.
-    fn keeps_shape<F: TensionFamily>(
-        &mut self,
-        state: &mut State<'_, F>,
-        factor: f64,
-    ) -> Result<bool, F::Error> {
-        self.set = factor;
-        state.try_tension(self.at(factor))
-    }
-
-    /// Sets a factor that is known to leave no faults.
-    fn return_to<F: TensionFamily>(
-        &mut self,
-        state: &mut State<'_, F>,
-        factor: f64,
-    ) -> Result<(), F::Error> {
-        if self.set == factor {
-            return Ok(());
+        let nodes = indices.iter().map(|k| k / F::SIDES);
+        let segments = bent_by(state.windows.polygon(), nodes);
+        let before = self.bending.of(state, &segments);
+        let factor = group.lower(state)?;
+        if factor < 1.0 && self.bending.of(state, &segments) > before * (1.0 + BENDING_SLACK) {
+            state.return_to(group.at(1.0))?;
+            self.stay.extend(indices);
+            return Ok(false);
         }
-        self.set = factor;
-        state.return_to(self.at(factor))
+        indices.iter().for_each(|k| {
+            self.stay.remove(k);
+        });
+        Ok(factor < 1.0 - RESOLUTION)
     }
+}
+
+/// The places of the tensions that are not zero.
+fn positive(tension: &[f64]) -> impl Iterator<Item = usize> + '_ {
+    tension.iter().enumerate().filter(|(_, t)| **t > 0.0).map(|(k, _)| k)
+}
+
+/// Whether some of the nodes, which ascend, are within reach of another.
+fn near(nodes: &[usize], node: usize, reach: usize, cycle: Option<usize>) -> bool {
+    let within = |node: usize, nodes: &[usize]| {
+        let at = nodes.partition_point(|&m| m + reach < node);
+        nodes.get(at).is_some_and(|&m| m <= node + reach)
+    };
+    within(node, nodes)
+        || cycle.is_some_and(|n| {
+            // Over the seam.
+            nodes.first().is_some_and(|&m| m + n <= node + reach)
+                || nodes.last().is_some_and(|&m| node + n <= m + reach)
+        })
 }

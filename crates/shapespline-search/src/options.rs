@@ -3,7 +3,7 @@
 use shapespline_criteria::{Checker, Criteria, Tolerances};
 use shapespline_geometry::{DataPolygon, InputError};
 
-/// The rule by which tension is raised, and whether it is relaxed afterwards.
+/// The rule by which tension is raised, and whether it is lowered afterwards.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
@@ -12,8 +12,8 @@ pub enum Strategy {
     Nussp,
     /// `ν ← max(step, 2ν)`: as many rounds as the tension needed has binary digits.
     Growth,
-    /// Growth, then every run of tension lowered until no run can be lowered by more than 1 %
-    /// without breaking a criterion.
+    /// Growth, then every tension lowered by itself until none can be lowered by more than some per cent
+    /// without breaking a criterion or making the curve bend more.
     #[default]
     Fairest,
     /// The rule of paper 000, section 4: `λ ← ρλ` with `ρ = step`, where `λ = 1/(1 + tension)`.

@@ -26,8 +26,8 @@ pub enum Status {
 pub enum Phase {
     /// Tension was raised where criteria failed.
     Raise,
-    /// Runs of tension were lowered.
-    Relax,
+    /// Tensions were lowered, each by itself.
+    Lower,
     /// Everything was solved and checked anew.
     Verify,
 }
@@ -54,7 +54,7 @@ pub struct Diagnostics {
     pub iterations: usize,
     /// Solves, complete or in part.
     pub solves: usize,
-    /// Runs of tension that relaxation tried to lower.
+    /// Tensions that were tried to be lowered.
     pub relaxations: usize,
     /// Nodes whose tension is not zero in the end.
     pub nodes_changed: usize,

@@ -3,7 +3,7 @@
 use crate::{
     Pattern, Phase, SearchOptions, Status, TensionFamily,
     fronts::{Front, Fronts},
-    state::State,
+    state::{State, on_all_sides},
 };
 
 impl<F: TensionFamily> State<'_, F> {
@@ -55,8 +55,8 @@ impl<F: TensionFamily> State<'_, F> {
             match pending.get_mut(at) {
                 Some((node, tension)) if *node == i => before.push(*tension),
                 _ => {
-                    before.push(family.tension()[i]);
-                    pending.insert(at, (i, family.tension()[i]));
+                    before.push(node_tension(*family, i));
+                    pending.insert(at, (i, node_tension(*family, i)));
                 }
             }
             pending[at].1 = options.raised(pending[at].1);
@@ -121,7 +121,7 @@ impl<F: TensionFamily> State<'_, F> {
     /// (5.65): over a run of non-convex coplanar segments the pull is one and the same. The tensions that
     /// says of nodes that are to be raised.
     fn levels(&self, equal: &[usize], options: &SearchOptions) -> Vec<(usize, f64)> {
-        let (n, closed) = (self.family.tension().len(), self.closed());
+        let (n, closed) = (self.windows.polygon().nodes(), self.closed());
         let mut levels = Vec::new();
         for run in consecutive(equal, closed.then_some(n)) {
             let run = || run.iter().flat_map(|&m| [m % n, (m + 1) % n]);
@@ -135,13 +135,15 @@ impl<F: TensionFamily> State<'_, F> {
 
     /// Tension at a node as it is, or as it is going to be.
     fn tension(&self, node: usize) -> f64 {
-        place(&self.pending, node).map_or(self.family.tension()[node], |at| self.pending[at].1)
+        place(&self.pending, node)
+            .map_or_else(|_| node_tension(self.family, node), |at| self.pending[at].1)
     }
+
     /// Whether segments around the pending tensions fail under them, where that can be seen without setting
     /// them and takes in all that are known to fail.
     fn faults_stay(&mut self) -> bool {
         let pending = std::mem::take(&mut self.pending);
-        let around = self.look(&pending);
+        let around = self.look(&on_all_sides::<F>(&pending));
         self.pending = pending;
         let Some(around) = around else { return false };
         if self.faults.iter().any(|(i, _)| !around.contains(i)) {
@@ -156,6 +158,12 @@ impl<F: TensionFamily> State<'_, F> {
         }
         !self.faults.is_empty()
     }
+}
+
+/// The larger tension beside a node.
+fn node_tension<F: TensionFamily>(family: &F, node: usize) -> f64 {
+    let sides = node * F::SIDES..(node + 1) * F::SIDES;
+    family.tension()[sides].iter().copied().fold(0.0, f64::max)
 }
 
 /// Maximal runs of consecutive numbers in an ascending list; in a cycle of length `n` the last run

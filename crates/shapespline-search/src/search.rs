@@ -7,7 +7,7 @@ use shapespline_geometry::DataPolygon;
 
 use crate::{
     FitError, Found, Outcome, Phase, SearchOptions, Status, Step, Strategy, TensionFamily,
-    relax::relax,
+    lower::lower,
     state::State,
     system::{collect, refill},
 };
@@ -79,7 +79,7 @@ fn search_from<F: TensionFamily>(
     let mut status = state.raise(options)?;
     if status == Status::Solved && !state.untouched() {
         if options.strategy == Strategy::Fairest {
-            relax(&mut state)?;
+            lower(&mut state)?;
         }
         status = state.verify(options)?;
     }

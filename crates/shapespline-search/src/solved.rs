@@ -45,6 +45,8 @@ impl<S: TensionSystem> SolvedFamily<S> {
 impl<S: TensionSystem> TensionFamily for SolvedFamily<S> {
     type Error = SolveError;
 
+    const SIDES: usize = S::SIDES;
+
     fn tension(&self) -> &[f64] {
         self.system.tension()
     }
@@ -63,7 +65,8 @@ impl<S: TensionSystem> TensionFamily for SolvedFamily<S> {
             Self::touch(system, nodes.clone(), touched);
         }
         if S::SCALES_LEGS {
-            for &(node, _) in changes {
+            for &(index, _) in changes {
+                let node = index / S::SIDES;
                 Self::touch(system, node..node + 1, touched);
             }
         }

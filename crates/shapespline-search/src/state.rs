@@ -1,6 +1,9 @@
 //! The curve of a search as it is, and what is known of it.
 
-use std::ops::{ControlFlow, Range};
+use std::{
+    borrow::Cow,
+    ops::{ControlFlow, Range},
+};
 
 use rayon::prelude::*;
 use shapespline_criteria::{Faults, WindowChecker};
@@ -31,8 +34,6 @@ pub(crate) struct State<'s, F> {
     verified: bool,
     /// The segment on which the last trial failed: the first to be looked at in the next one.
     pub(crate) suspect: usize,
-    /// Whether the curve without any tension is known to have faults: mostly the search began with it.
-    pub(crate) plain_fails: bool,
     /// Tensions (ascending by node) that are raised but not yet set.
     pub(crate) pending: Vec<(usize, f64)>,
     /// Scratch: the nodes that are raised, their tensions before, and the legs of a look at other tension.
@@ -51,13 +52,9 @@ impl<'s, F: TensionFamily> State<'s, F> {
     pub(crate) fn new(
         faults: Vec<(usize, Faults)>,
         family: &'s mut F,
-        mut windows: WindowChecker<'s>,
+        windows: WindowChecker<'s>,
         monitor: &'s mut dyn FnMut(&Step) -> ControlFlow<()>,
     ) -> Self {
-        let is_plain = family.tension().iter().all(|&t| t == 0.0);
-        let fails =
-            |&(i, _): &(usize, Faults)| !windows.failures_at(i, family.end_legs(i)).is_empty();
-        let plain_fails = is_plain && faults.iter().any(fails);
         Self {
             family,
             windows,
@@ -68,7 +65,6 @@ impl<'s, F: TensionFamily> State<'s, F> {
             unchecked: Vec::new(),
             verified: false,
             suspect: 0,
-            plain_fails,
             pending: Vec::with_capacity(32),
             nodes: Vec::with_capacity(32),
             before: Vec::with_capacity(32),
@@ -105,10 +101,10 @@ impl<'s, F: TensionFamily> State<'s, F> {
         Ok(())
     }
 
-    /// Fills `legs` with the end legs that segments around some nodes would have under other tensions at
+    /// Fills `legs` with the end legs that segments around some tensions would have under other values of
     /// those, where that can be seen without setting them. Returns the segments.
     pub(crate) fn look(&mut self, changes: &[(usize, f64)]) -> Option<Range<usize>> {
-        let (first, last) = (changes.first()?.0, changes.last()?.0);
+        let [first, last] = [changes.first()?.0, changes.last()?.0].map(|index| index / F::SIDES);
         let segments = self.windows.polygon().segments();
         let around = first.saturating_sub(AROUND)..segments.min(last + AROUND);
         if !self.family.legs_under(changes, around.clone(), &mut self.legs) {
@@ -118,7 +114,7 @@ impl<'s, F: TensionFamily> State<'s, F> {
         Some(around)
     }
 
-    /// Whether segments around some nodes fail under other tensions at those, where that can be seen
+    /// Whether segments around some tensions fail under other values of those, where that can be seen
     /// without setting them.
     pub(crate) fn seems_to_break(&mut self, changes: &[(usize, f64)]) -> Option<bool> {
         let around = self.look(changes)?;
@@ -138,10 +134,11 @@ impl<'s, F: TensionFamily> State<'s, F> {
 
     /// Sets the pending tensions, solves where that matters, and checks what it touched.
     pub(crate) fn set_pending(&mut self) -> Result<(), F::Error> {
-        let mut pending = std::mem::take(&mut self.pending);
+        let changes = std::mem::take(&mut self.pending);
+        let pending = on_all_sides::<F>(&changes);
         self.solve(&pending)?;
-        pending.clear();
-        self.pending = pending;
+        self.pending = changes;
+        self.pending.clear();
         let touched = &self.touched;
         self.faults.retain(|(i, _)| {
             let after = touched.partition_point(|r| r.start <= *i);
@@ -196,6 +193,13 @@ impl<'s, F: TensionFamily> State<'s, F> {
         Ok(fault.is_none())
     }
 
+    /// Whether some of the segments fail as they are.
+    pub(crate) fn has_faults_among(&mut self, segments: &[usize]) -> bool {
+        let (family, windows, doubts) = (&*self.family, &mut self.windows, &self.doubts);
+        let legs = |i| family.end_legs(i);
+        segments.iter().any(|&i| first_fault(windows, doubts, i..i + 1, legs).is_some())
+    }
+
     /// Sets tensions under which the curve is known to have no faults: solved, not checked again.
     pub(crate) fn return_to(&mut self, changes: &[(usize, f64)]) -> Result<(), F::Error> {
         self.solve(changes)?;
@@ -233,13 +237,19 @@ impl<'s, F: TensionFamily> State<'s, F> {
         self.stopped
     }
 
+    /// The number of nodes with tension.
+    fn tense_nodes(&self) -> usize {
+        let nodes = self.family.tension().chunks_exact(F::SIDES);
+        nodes.filter(|sides| sides.iter().any(|&t| t > 0.0)).count()
+    }
+
     pub(crate) fn outcome(self, status: Status) -> Outcome {
         let diagnostics = Diagnostics {
             status,
             iterations: self.iterations,
             solves: self.solves,
             relaxations: self.relaxations,
-            nodes_changed: self.family.tension().iter().filter(|&&t| t > 0.0).count(),
+            nodes_changed: self.tense_nodes(),
         };
         let undecided = self.doubts.accepted();
         Outcome { diagnostics, history: self.history, faults: self.faults, undecided }
@@ -260,6 +270,17 @@ fn first_fault(
         segments.start = i + 1;
     }
     None
+}
+
+/// Changes by node as changes of the tensions on all of its sides.
+pub(crate) fn on_all_sides<F: TensionFamily>(nodes: &[(usize, f64)]) -> Cow<'_, [(usize, f64)]> {
+    if F::SIDES == 1 {
+        return Cow::Borrowed(nodes);
+    }
+    let sides = |&(node, tension): &(usize, f64)| {
+        (node * F::SIDES..(node + 1) * F::SIDES).map(move |index| (index, tension))
+    };
+    nodes.iter().flat_map(sides).collect()
 }
 
 /// Sorts ranges and joins those that meet.

@@ -11,20 +11,23 @@ use shapespline_geometry::{DVec3, DataPolygon, Span};
 /// This is all that a family with a global system has to say; [`SolvedFamily`](crate::SolvedFamily)
 /// makes a [`TensionFamily`](crate::TensionFamily) of it.
 pub trait TensionSystem: Rows + Sync {
+    /// Tensions per node, as [`TensionFamily::SIDES`](crate::TensionFamily::SIDES).
+    const SIDES: usize = 1;
+
     /// Whether tension changes the legs beside a node even where the tangents stay as they are.
     const SCALES_LEGS: bool;
 
     /// The polygon.
     fn polygon(&self) -> &DataPolygon;
 
-    /// The tension at each distinct node.
+    /// The tensions, as [`TensionFamily::tension`](crate::TensionFamily::tension).
     fn tension(&self) -> &[f64];
 
-    /// Sets the tension at a node.
-    fn set_tension(&mut self, node: usize, tension: f64);
+    /// Sets a tension, by its index.
+    fn set_tension(&mut self, index: usize, tension: f64);
 
-    /// Appends the rows that change with the tension at a node to `rows`, in any order.
-    fn rows_of(&self, node: usize, rows: &mut Vec<usize>);
+    /// Appends the rows that change with a tension to `rows`, in any order.
+    fn rows_of(&self, index: usize, rows: &mut Vec<usize>);
 
     /// Makes row `i` of it, which so far was that row under some other tension.
     #[inline]

@@ -55,8 +55,8 @@ pub(crate) struct Work {
     solver: Resolvable,
     /// Made when tension first changes: most curves need none.
     kept: Vec<Row>,
-    /// The nodes at which tension was changed last, the rows that this changes, and the unknowns.
-    nodes: Vec<usize>,
+    /// The tensions that were changed last, the rows that this changes, and the unknowns.
+    indices: Vec<usize>,
     rows: Vec<usize>,
     unknowns: Vec<Range<usize>>,
     /// Where looks are taken, and whether the system is still the one that the place was made of.
@@ -64,7 +64,7 @@ pub(crate) struct Work {
     place_is_valid: bool,
     /// Rows of the place that are those of the last look.
     looked: Vec<usize>,
-    /// The tensions that a look sets aside: those of its nodes as they are.
+    /// The tensions that a look sets aside, as they are.
     present: Vec<(usize, f64)>,
     /// Whether the solution is that of a solve of all rows, and not brought up to date.
     all_is_solved: bool,
@@ -84,7 +84,7 @@ impl Work {
     pub(crate) fn begin<S: TensionSystem>(system: &S) -> Result<Box<Self>, SolveError> {
         let mut work = SPARE.try_with(Cell::take).ok().flatten().unwrap_or_default();
         work.kept.clear();
-        work.nodes.clear();
+        work.indices.clear();
         work.rows.clear();
         work.place_is_valid = false;
         work.all_is_solved = true;
@@ -160,11 +160,11 @@ impl Work {
     ) -> bool {
         legs.clear();
         let (Some(first), Some(last)) = (changes.first(), changes.last()) else { return false };
-        if last.0 - first.0 >= FEW {
+        if last.0 - first.0 >= FEW * S::SIDES {
             return false;
         }
         self.keep_rows(system);
-        let present = changes.iter().map(|&(node, _)| (node, system.tension()[node]));
+        let present = changes.iter().map(|&(index, _)| (index, system.tension()[index]));
         self.present.clear();
         self.present.extend(present);
         self.change(system, changes);
@@ -186,15 +186,15 @@ impl Work {
 
     /// Sets tensions in the system, and finds the rows that change: mostly those of the last time.
     fn change<S: TensionSystem>(&mut self, system: &mut S, changes: &[(usize, f64)]) {
-        changes.iter().for_each(|&(node, tension)| system.set_tension(node, tension));
-        let nodes = || changes.iter().map(|change| change.0);
-        if self.nodes.iter().copied().eq(nodes()) {
+        changes.iter().for_each(|&(index, tension)| system.set_tension(index, tension));
+        let indices = || changes.iter().map(|change| change.0);
+        if self.indices.iter().copied().eq(indices()) {
             return;
         }
-        self.nodes.clear();
-        self.nodes.extend(nodes());
+        self.indices.clear();
+        self.indices.extend(indices());
         self.rows.clear();
-        nodes().for_each(|node| system.rows_of(node, &mut self.rows));
+        indices().for_each(|index| system.rows_of(index, &mut self.rows));
         if !self.rows.is_sorted_by(|a, b| a < b) {
             self.rows.sort_unstable();
             self.rows.dedup();
@@ -203,8 +203,8 @@ impl Work {
 
     /// Sets the tensions again that were there before.
     fn restore<S: TensionSystem>(&self, system: &mut S) {
-        for &(node, tension) in &self.present {
-            system.set_tension(node, tension);
+        for &(index, tension) in &self.present {
+            system.set_tension(index, tension);
         }
     }
 

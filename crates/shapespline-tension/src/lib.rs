@@ -10,11 +10,13 @@
 //! `w λ⁰_{i−1} T_{i−1} + [w(3−λ⁰_{i−1}) + (1−w)(3−λ¹_i)] T_i + (1−w) λ¹_i T_{i+1}
 //!  = 3 [w L_{i−1}/h_{i−1} + (1−w) L_i/h_i]`.
 //!
-//! `λ = 1` is the classical C² cubic spline, `λ → 0` the polygon. The tension of a node is `1/λ − 1`.
+//! `λ = 1` is the classical C² cubic spline, `λ → 0` the polygon. The tension of a node is `1/λ − 1`,
+//! of the smaller of its two `λ`.
 //!
 //! **Guarantee.** For all `λ` in `(0, 1]` the curve exists and is unique (Theorem 3.1): the system is
 //! strictly diagonally dominant. [`TensionSpline::shape_preserving`] returns with status `Solved`
-//! only a curve that was solved and checked completely, every criterion decided exactly.
+//! only a curve that was solved and checked completely, every criterion decided exactly. The search raises the
+//! two tensions at a node together, and lowers each of the two by itself.
 //!
 //! **Identity with ν-splines (3.10).** With one `λ_i` a node the image is that of the ν-spline with
 //! `ν_i = √(h_{i−1}h_i) [(6−4λ_i−2λ_{i+1})/h_i + (6−2λ_{i−1}−4λ_i)/h_{i−1}]/λ_i`.

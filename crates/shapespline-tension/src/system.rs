@@ -15,40 +15,32 @@ pub(crate) struct MannisSystem<'a> {
     polygon: &'a DataPolygon,
     /// `[λ⁰, λ¹]` of each segment.
     slopes: Vec<[f64; 2]>,
-    /// `1/λ − 1` at each distinct node, of the smaller `λ` beside it.
+    /// `1/λ − 1` on both sides of each distinct node: that of the segment before, `λ¹_{i−1}`, and that of
+    /// the segment after, `λ⁰_i`. Zero beyond an open end.
     tension: Vec<f64>,
-    /// Whether there is one `λ` on both sides of every node.
-    even: bool,
 }
 
 impl<'a> MannisSystem<'a> {
     /// The system of given `λ`, each in `(0, 1]`, one pair a segment.
     pub(crate) fn new(polygon: &'a DataPolygon, slopes: Vec<[f64; 2]>) -> Self {
-        let n = polygon.segments();
-        let at = |i: usize| {
-            let before = match i {
-                0 if polygon.is_closed() => slopes[n - 1][1],
-                0 => 1.0,
-                _ => slopes[i - 1][1],
-            };
-            let after = if i < n { slopes[i][0] } else { 1.0 };
-            1.0 / f64::min(before, after) - 1.0
+        let side = |index: usize| {
+            let place = place_of(polygon, index);
+            place.map_or(0.0, |(segment, end)| 1.0 / slopes[segment][end] - 1.0)
         };
-        let tension = (0..polygon.nodes()).map(at).collect();
-        let meet = |pair: &[[f64; 2]]| pair[0][1] == pair[1][0];
-        let even = slopes.windows(2).all(meet) && (slopes[n - 1][1] == slopes[0][0]);
-        Self { polygon, slopes, tension, even }
+        let tension = (0..2 * polygon.nodes()).map(side).collect();
+        Self { polygon, slopes, tension }
     }
 
     /// The system without tension: every `λ` is one.
     pub(crate) fn without_tension(polygon: &'a DataPolygon) -> Self {
-        let (slopes, tension) = (vec![[1.0; 2]; polygon.segments()], vec![0.0; polygon.nodes()]);
-        Self { polygon, slopes, tension, even: true }
+        let slopes = vec![[1.0; 2]; polygon.segments()];
+        Self { polygon, slopes, tension: vec![0.0; 2 * polygon.nodes()] }
     }
 
-    /// `[λ⁰, λ¹]` of each segment, and the tension of each distinct node.
+    /// `[λ⁰, λ¹]` of each segment, and the larger tension beside each distinct node.
     pub(crate) fn into_parts(self) -> (Vec<[f64; 2]>, Vec<f64>) {
-        (self.slopes, self.tension)
+        let nodes = self.tension.chunks_exact(2).map(|sides| sides[0].max(sides[1]));
+        (self.slopes, nodes.collect())
     }
 
     #[inline(always)]
@@ -66,7 +58,7 @@ impl<'a> MannisSystem<'a> {
     }
 
     /// The left-hand side of an interior row.
-    #[inline]
+    #[inline(always)]
     fn coefficients(&self, [before, after]: [usize; 2], [w, v]: [f64; 2]) -> [f64; 3] {
         let (far0, far1) = (self.slopes[before][0], self.slopes[after][1]);
         [w * far0, w * (3.0 - far0) + v * (3.0 - far1), v * far1]
@@ -98,6 +90,17 @@ fn weights([h0, h1]: [f64; 2], [near0, near1]: [f64; 2]) -> [f64; 2] {
     let r = (h0 / h1) * ratio * ratio;
     let w = 1.0 / (1.0 + r);
     [w, if w > 0.0 { r * w } else { 1.0 }]
+}
+
+/// The segment, and which of its ends, that a tension belongs to; `None` beyond an open end.
+fn place_of(polygon: &DataPolygon, index: usize) -> Option<(usize, usize)> {
+    let (node, n) = (index / 2, polygon.segments());
+    match index % 2 {
+        0 if node > 0 => Some((node - 1, 1)),
+        0 if polygon.is_closed() => Some((n - 1, 1)),
+        1 if node < n => Some((node, 0)),
+        _ => None,
+    }
 }
 
 impl Rows for MannisSystem<'_> {
@@ -139,6 +142,9 @@ impl Rows for MannisSystem<'_> {
 }
 
 impl TensionSystem for MannisSystem<'_> {
+    /// Manni's own generality: the two `λ` beside a node are independent (Lemmas 4.2 and 4.3 need their
+    /// ratio bounded, so raising takes them together).
+    const SIDES: usize = 2;
     const SCALES_LEGS: bool = true;
 
     fn polygon(&self) -> &DataPolygon {
@@ -149,41 +155,19 @@ impl TensionSystem for MannisSystem<'_> {
         &self.tension
     }
 
-    /// One `λ` for both sides of the node: Lemmas 4.2–4.3 need their ratio bounded.
-    fn set_tension(&mut self, node: usize, tension: f64) {
-        self.tension[node] = tension;
-        let lambda = 1.0 / (1.0 + tension);
-        let n = self.polygon.segments();
-        if node > 0 || self.polygon.is_closed() {
-            self.slopes[if node > 0 { node - 1 } else { n - 1 }][1] = lambda;
-        }
-        if node < n {
-            self.slopes[node][0] = lambda;
+    fn set_tension(&mut self, index: usize, tension: f64) {
+        if let Some((segment, end)) = place_of(self.polygon, index) {
+            self.tension[index] = tension;
+            self.slopes[segment][end] = 1.0 / (1.0 + tension);
         }
     }
 
-    /// The own row depends on it through the ratio of the two, and next to a natural end.
-    fn rows_of(&self, node: usize, rows: &mut Vec<usize>) {
-        let n = self.polygon.segments();
-        if self.polygon.is_closed() {
-            rows.extend([(node + n - 1) % n, node, (node + 1) % n]);
-        } else {
-            rows.extend(node.saturating_sub(1)..=(node + 1).min(n));
+    /// The rows at both ends of the segment: its `λ` stands in that of its own node through the ratio of
+    /// the two there, and in that of the other node (or natural end) as it is.
+    fn rows_of(&self, index: usize, rows: &mut Vec<usize>) {
+        if let Some((segment, _)) = place_of(self.polygon, index) {
+            rows.extend([segment, (segment + 1) % self.count()]);
         }
-    }
-
-    /// With one `λ` on both sides of a node, the weights and the right-hand side of its row do not depend
-    /// on it.
-    #[inline]
-    fn renew(&self, i: usize, row: &mut Row) {
-        if !self.even || i == 0 || i == self.polygon.segments() {
-            *row = self.row(i);
-            return;
-        }
-        let spacings = [self.polygon.spacing(i - 1), self.polygon.spacing(i)];
-        let weights = weights(spacings, [1.0; 2]);
-        let [lower, diagonal, upper] = self.coefficients([i - 1, i], weights);
-        *row = Row { lower, diagonal, upper, ..*row };
     }
 
     #[inline]
@@ -220,12 +204,17 @@ mod tests {
                 [MannisSystem::without_tension(&polygon), MannisSystem::new(&polygon, uneven)]
             {
                 let mut kept: Vec<Row> = (0..system.count()).map(|i| system.row(i)).collect();
-                for (node, tension) in
-                    [(3, 2.0), (0, 0.7), (system.count() - 1, 9.0), (3, 0.0), (4, 1e9)]
-                {
+                for (index, tension) in [
+                    (6, 2.0),
+                    (1, 0.7),
+                    (7, 3.0),
+                    (2 * system.count() - 2, 9.0),
+                    (6, 0.0),
+                    (9, 1e9),
+                ] {
                     let mut rows = Vec::new();
-                    system.set_tension(node, tension);
-                    system.rows_of(node, &mut rows);
+                    system.set_tension(index, tension);
+                    system.rows_of(index, &mut rows);
                     for i in rows {
                         system.renew(i, &mut kept[i]);
                     }

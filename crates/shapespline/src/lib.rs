@@ -7,7 +7,7 @@
 //! | [`geometry`] | data polygon, parametrisations, Bézier segments, exact signs, piecewise curves |
 //! | [`banded`] | tridiagonal and cyclic solvers |
 //! | [`criteria`] | the shape criteria, decided exactly, and their report |
-//! | [`search`] | automatic tension: raise where a criterion fails, then relax |
+//! | [`search`] | automatic tension: raise where a criterion fails, then lower |
 //! | [`monotone`] | functions of one variable: Bézier-like curves, C¹ monotone quartic, C² monotone quintic |
 //! | [`nu`] | ν-splines: G², one linear system |
 //! | [`tension`] | C² tension cubics: C² in a parameter of their own, one linear system |
@@ -52,7 +52,7 @@ pub use shapespline_tension as tension;
 
 /// What most users need.
 pub mod prelude {
-    pub use shapespline_catmull_rom::{CatmullRom, Continuity, HandleOptions};
+    pub use shapespline_catmull_rom::{CatmullRom, Continuity, Directions, HandleOptions};
     pub use shapespline_criteria::{Checker, Criteria, Criterion, ShapeReport, Tolerances};
     pub use shapespline_fair::{Energy, FairOptions, FairSpline};
     pub use shapespline_geometry::{

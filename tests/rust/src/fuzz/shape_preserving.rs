@@ -38,7 +38,9 @@ pub(super) fn run(data: &[u8]) {
         0 => judged.judge(NuSpline::shape_preserving(polygon.clone(), &options), questions),
         1 => judged.judge(TensionSpline::shape_preserving(polygon.clone(), &options), questions),
         _ => {
-            let handles = HandleOptions { criteria, tolerances, safety, continuity };
+            let kinds = [Directions::Balanced, Directions::Parametrization];
+            let directions = kinds[usize::from(safety != 0.9)];
+            let handles = HandleOptions { criteria, tolerances, safety, continuity, directions };
             judged.must_solve = default && safety == 0.9 && solvable;
             judged.judge(CatmullRom::shape_preserving(polygon.clone(), &handles), questions);
         }
