@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import cases
+import polygons
 import shapespline as ss
 from shape_by_sampling import CRITERIA, of_curve
 
@@ -108,3 +109,25 @@ def test_straight_data_have_nothing_to_violate():
     assert report.ok
     assert {r.criterion for r in report.segments if r.applicable} == {"collinearity"}
     assert report.undecided == []
+
+
+@pytest.mark.parametrize("family", cases.FAMILIES)
+@pytest.mark.parametrize("dim", [2, 3])
+def test_a_printed_report_measures_the_curve_beside_the_cubic(family, dim, rng):
+    points = polygons.random_walk(rng, 12, dim)
+    curve, cubic = cases.preserving(family)(points, "chordal"), ss.NuSpline(points)
+    own = str(curve.check())
+    lines = {line[:17].strip(): line[17:].split() for line in own.splitlines()}
+    for k, found in enumerate([curve.fairness(), cubic.fairness()]):
+        energy, largest = lines["energy ∫κ²ds"][k], lines["max. curvature"][k]
+        assert float(energy) == pytest.approx(found.bending / found.length, rel=1e-3)
+        assert float(largest) == pytest.approx(found.max_curvature, rel=1e-3)
+    # The same is said of the curve's pieces, whoever made them.
+    pieces = ss.PiecewiseBezier(curve.bezier, curve.knots)
+    other = str(ss.check_shape(points, pieces, parameters=curve.parameters))
+    assert other.splitlines()[-3:] == own.splitlines()[-3:]
+
+
+def test_a_long_report_is_printed_without_measures():
+    text = str(ss.NuSpline(polygons.gentle_track(1100)).check())
+    assert "fairness" not in text

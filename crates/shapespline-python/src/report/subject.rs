@@ -6,7 +6,9 @@ use shapespline::{
     criteria::{
         Checker, Criterion, CurveChecker, CurveError, INTERPOLATION, Notes, Record, ShapeReport,
     },
-    geometry::{DVec3, DataPolygon, InputMap, PiecewiseBezier},
+    geometry::{DVec3, DataPolygon, Fairness, InputMap, PiecewiseBezier, fairness_with},
+    nu::NuSpline,
+    search::{Interpolant, Tension},
 };
 
 use crate::{
@@ -93,6 +95,24 @@ impl Subject {
         match self {
             Self::Own(curve) => curve.count() - 1,
             Self::Other { polygon, .. } => polygon.segments(),
+        }
+    }
+
+    /// The fairness of the curve, and that of the C² cubic spline with the same points, parameters and ends;
+    /// none where f64 cannot hold that, and after Ctrl-C.
+    pub(crate) fn fairness(&self, go_on: GoOn<'_>) -> Option<[Fairness; 2]> {
+        let cubic = |polygon: DataPolygon| {
+            let cubic = NuSpline::new(polygon, Tension::Uniform(0.0)).ok()?;
+            fairness_with(&PiecewiseBezier::from(cubic.curve()), go_on)
+        };
+        match self {
+            Self::Own(curve) => {
+                let own = fairness_with(&PiecewiseBezier::from(curve.cubic()), go_on)?;
+                Some([own, cubic(curve.polygon().ok()?)?])
+            }
+            Self::Other { polygon, curve, .. } => {
+                Some([fairness_with(curve, go_on)?, cubic(polygon.as_ref().clone())?])
+            }
         }
     }
 
