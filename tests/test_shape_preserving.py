@@ -17,6 +17,10 @@ from shape_by_sampling import of_curve, shape_by_sampling
 POLYGONS = 60
 
 
+#: Turns of 1e-9, chords that differ by 1e6: a fair curve may fail there, and says so (limits.md).
+HARD = ("near collinear", "planar near collinear", "uneven chords")
+
+
 def count_of(curve_class, count):
     """Return of how many polygons a family fits: a fair curve takes some 100 times as long."""
     return count if curve_class in cases.TENSE else scaled(count // 3)
@@ -71,9 +75,16 @@ def test_generated_polygons(curve_class, family, end):
         if (case := ended(points, end, rng)) is None:
             continue
         points, boundary = case
-        curve = cases.preserving(curve_class)(points, boundary=boundary)
+        hard = curve_class is ss.FairSpline and family in HARD
+        try:
+            curve = cases.preserving(curve_class)(points, boundary=boundary)
+        except ss.ConvergenceError:
+            if not hard:
+                raise
+            continue
         found = of_curve(curve)
-        assert found.violations == [], f"polygon {number}"
+        hidden = {(u.criterion, u.segment) for u in curve.check().undecided} if hard else set()
+        assert set(found.violations) <= hidden, f"polygon {number}"
         assert curve.check().ok, f"polygon {number}"
         np.testing.assert_array_equal(curve.points, points)
 
