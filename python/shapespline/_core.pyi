@@ -1,4 +1,4 @@
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, Literal, NoReturn, TypedDict, final, overload
 
 import numpy as np
@@ -173,7 +173,12 @@ class FairSpline(SpaceCurve):
         collinearity: float = 0.2,
         tolerance: float = 1e-9,
         max_iterations: int | None = None,
+        corners: Sequence[int] | float | None = None,
+        tangents: Mapping[int, ArrayLike] | None = None,
+        max_deviation: float | None = None,
     ) -> FairSpline: ...
+    @property
+    def corners(self) -> tuple[int, ...]: ...
     @property
     def energy(self) -> _Energy: ...
     @property

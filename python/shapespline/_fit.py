@@ -24,7 +24,7 @@ from shapespline import (
 from shapespline._convert import piecewise
 from shapespline._files import write_curve
 from shapespline._io import STREAM, FileError, UsageError, name_of, refuse_overwriting, write
-from shapespline._methods import METHODS
+from shapespline._methods import METHODS, Method
 from shapespline._monotone_check import check_monotone
 from shapespline._progress import progress
 from shapespline._tables import read_function, read_points, unit_of, write_table
@@ -47,9 +47,16 @@ _FUNCTIONS: dict[str, tuple[Any, tuple[str, ...]]] = {
     "quartic": (MonotoneQuartic, ("shape", "tolerance")),
     "quintic": (MonotoneQuintic, ("slopes", "fairness", "tolerance")),
 }
+
+
+def _flags(method: Method) -> tuple[str, ...]:
+    """Return a method's options that a command line can say."""
+    return tuple(name for name in method.all_options if name != "tangents")
+
+
 #: Options of every method, the default method first.
 OPTIONS: dict[str, tuple[str, ...]] = {
-    **{name: (*_CURVE, *method.all_options) for name, method in METHODS.items()},
+    **{name: (*_CURVE, *_flags(method)) for name, method in METHODS.items()},
     **{name: options for name, (_, options) in _FUNCTIONS.items()},
 }
 #: Names of given tension: with one of them there is no search.

@@ -30,7 +30,9 @@ if TYPE_CHECKING:
 
 # Every option that some method has: the compiled part takes them all.
 _ALL = {
-    name: default for method in METHODS.values() for name, default in method.all_options.items()
+    name: default
+    for method in METHODS.values()
+    for name, default in {**method.options, **method.given}.items()
 }
 
 

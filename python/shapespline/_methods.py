@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
@@ -27,11 +27,13 @@ class Method:
     #: The same of given tension; empty where there is none.
     given: Mapping[str, Any]
     parameters: str = "chordal"
+    #: Options of the fit of one curve, which speak of its points, with their defaults.
+    alone: Mapping[str, Any] = field(default_factory=dict)
 
     @property
     def all_options(self) -> dict[str, Any]:
-        """The options of both kinds of fit, with their defaults."""
-        return {**self.options, **self.given}
+        """The options of all kinds of fit, with their defaults."""
+        return {**self.options, **self.given, **self.alone}
 
     def fit(self, *arguments: Any, **options: Any) -> SpaceCurve:
         """Return the curve that keeps the shape."""
@@ -53,7 +55,12 @@ _SEARCH = {**_CHECK, "strategy": "fairest", "step": None, "max_iterations": None
 #: Every method of `fit`, `fit_many` and ``shapespline fit`` for curves, the default first.
 METHODS: Mapping[str, Method] = MappingProxyType(
     {
-        "fair": Method(FairSpline, {**_CHECK, "energy": "parametric", "max_iterations": None}, {}),
+        "fair": Method(
+            FairSpline,
+            {**_CHECK, "energy": "parametric", "max_iterations": None},
+            {},
+            alone={"corners": None, "tangents": None, "max_deviation": None},
+        ),
         "nu": Method(NuSpline, _SEARCH, {"tension": 0.0}),
         "tension": Method(TensionSpline, _SEARCH, {"tangent_scale": 1.0}),
         "catmull-rom": Method(

@@ -64,6 +64,13 @@ def _vector(text: str) -> list[float]:
     return found
 
 
+def _corners(text: str) -> list[int] | float:
+    parts = [part.strip() for part in text.split(",")]
+    if all(re.fullmatch("[0-9]{1,15}", part) for part in parts):
+        return [int(part) for part in parts]
+    return real(text)
+
+
 def _parameters(text: str) -> str | float:
     value = number(text)
     return text if value is None else value
@@ -192,6 +199,19 @@ def add_fit_options(parser: argparse.ArgumentParser, methods: Iterable[str]) -> 
         "--energy",
         choices=["parametric", "bending"],
         help="fair: what is minimised (default: parametric)",
+    )
+    curve.add_argument(
+        "--corners",
+        type=_corners,
+        metavar="I,…",
+        help="fair: points at which there are corners, by index from 0, or as a number with a "
+        "decimal point the turning angle (radians) from which on points are corners",
+    )
+    curve.add_argument(
+        "--max-deviation",
+        type=real,
+        metavar="X",
+        help="fair: how far at most the curve lies from the chords, in the units of the points",
     )
     curve.add_argument(
         "--continuity", choices=["C1", "G1"], help="catmull-rom: one handle scale per point, or two"

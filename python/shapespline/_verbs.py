@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Literal, overload
 from shapespline._methods import given_options, method_of
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Mapping, Sequence
 
     from numpy.typing import ArrayLike
 
@@ -46,6 +46,9 @@ def fit(
     tolerance: float | None = ...,
     max_iterations: int | None = ...,
     energy: _Energy | None = ...,
+    corners: Sequence[int] | float | None = ...,
+    tangents: Mapping[int, ArrayLike] | None = ...,
+    max_deviation: float | None = ...,
 ) -> FairSpline: ...
 @overload
 def fit(
@@ -116,6 +119,9 @@ def fit(
     tolerance: float | None = None,
     max_iterations: int | None = None,
     energy: _Energy | None = None,
+    corners: Sequence[int] | float | None = None,
+    tangents: Mapping[int, ArrayLike] | None = None,
+    max_deviation: float | None = None,
     strategy: _Strategy | None = None,
     step: float | None = None,
     safety: float | None = None,
@@ -144,6 +150,8 @@ def fit(
     max_iterations : int, optional
         Method ``"fair"``, ``"nu"`` or ``"tension"``: the largest number of iterations.
     energy : {"parametric", "bending"}, optional
+        Method ``"fair"``: as for `FairSpline`.
+    corners, tangents, max_deviation
         Method ``"fair"``: as for `FairSpline`.
     strategy, step
         Method ``"nu"`` or ``"tension"``: as for ``NuSpline.shape_preserving`` and
@@ -198,6 +206,9 @@ def fit(
         "tolerance": tolerance,
         "max_iterations": max_iterations,
         "energy": energy,
+        "corners": corners,
+        "tangents": tangents,
+        "max_deviation": max_deviation,
         "strategy": strategy,
         "step": step,
         "safety": safety,
@@ -205,7 +216,7 @@ def fit(
         "directions": directions,
     }
     entry = method_of(method)
-    given = given_options(method, options, entry.options)
+    given = given_options(method, options, {**entry.options, **entry.alone})
     chosen = entry.parameters if parameters is None else parameters
     if boundary is not None:
         given["boundary"] = boundary

@@ -12,6 +12,7 @@ use shapespline::{
 };
 
 use crate::{
+    constraints::Given,
     curve::SpaceCurve,
     fit::{CurveInput, Request, preserve_fair},
     input::Points,
@@ -54,6 +55,16 @@ use crate::{
 ///     As for the method ``check``.
 /// max_iterations : int, optional
 ///     Largest number of Newton steps; by default each phase has a limit of its own.
+/// corners : sequence of int or float, optional
+///     Points at which the curve has a corner: their indices, or as a float the turning angle in radians
+///     from which on points are corners. The data are split there; each part has natural ends, and the
+///     criteria ask for nothing at a corner. Needs natural or periodic ends.
+/// tangents : dict of int to array_like, optional
+///     Directions of the curve at points, by index; lengths do not matter. What torsion asks may not go
+///     together with them.
+/// max_deviation : float, optional
+///     How far at most the curve lies from the chord between its points, a length: control points are held
+///     within it, and with them the curve.
 ///
 /// Raises
 /// ------
@@ -101,10 +112,13 @@ impl FairSpline {
             collinearity=0.2,
             tolerance=1e-9,
             max_iterations=None,
+            corners=None,
+            tangents=None,
+            max_deviation=None,
         ),
         text_signature = "(points, parameters='chordal', *, boundary='natural', \
                           closed=False, repeated='error', energy='parametric', criteria=None, resolution=0.0, coplanarity=0.2, collinearity=0.2, \
-                          tolerance=1e-9, max_iterations=None)"
+                          tolerance=1e-9, max_iterations=None, corners=None, tangents=None, max_deviation=None)"
     )]
     // One argument a keyword: this is the signature that users see.
     #[allow(clippy::too_many_arguments)]
@@ -122,15 +136,38 @@ impl FairSpline {
         #[pyo3(from_py_with = options::collinearity)] collinearity: f64,
         #[pyo3(from_py_with = options::tolerance)] tolerance: f64,
         #[pyo3(from_py_with = options::max_iterations)] max_iterations: Option<usize>,
+        corners: Option<&Bound<'_, PyAny>>,
+        tangents: Option<&Bound<'_, PyAny>>,
+        #[pyo3(from_py_with = options::max_deviation)] max_deviation: Option<f64>,
     ) -> PyResult<PyClassInitializer<Self>> {
+        let given = Given::new(corners, tangents, max_deviation, points.dimension)?;
         let input = CurveInput::new(points, parameters, boundary, closed, repeated)?;
         let criteria = criteria.or(Criteria::OF_FITS);
         let tolerances = tolerances(resolution, coplanarity, collinearity, tolerance)?;
         let options =
             FairOptions { criteria, tolerances, energy, max_iterations, ..FairOptions::default() };
-        let base =
-            preserve_fair(py, input, &options, &Request::without_strategy(criteria, tolerances))?;
+        let base = preserve_fair(
+            py,
+            input,
+            options,
+            &given,
+            &Request::without_strategy(criteria, tolerances),
+        )?;
         Ok(PyClassInitializer::from(base).add_subclass(Self))
+    }
+
+    /// The points at which the curve has corners, a tuple of indices.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import shapespline as ss
+    /// >>> ss.FairSpline([[0, 0], [2, 0], [2, 2], [3, 3]], corners=1.5).corners
+    /// (1,)
+    #[getter]
+    fn corners<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyTuple>> {
+        let base = slf.as_super().get();
+        let map = &base.curve.map;
+        PyTuple::new(slf.py(), base.curve.corners().iter().map(|&node| map.node(node)))
     }
 
     /// What was minimised: ``"parametric"`` or ``"bending"``.

@@ -12,6 +12,7 @@ use shapespline::{
 
 use crate::{
     asked::Asked,
+    constraints::Given,
     curve::{Curve, Fitted, Member, SpaceCurve},
     diagnostics::{Search, Work},
     error::{convergence_error, fit_error},
@@ -179,12 +180,16 @@ pub(crate) fn fit_fair(
 pub(crate) fn preserve_fair(
     py: Python<'_>,
     input: CurveInput,
-    options: &FairOptions,
+    options: FairOptions,
+    given: &Given,
     request: &Request,
 ) -> PyResult<SpaceCurve> {
     let (size, repeated) = (input.0.points.len(), input.0.repeated);
     let fit = |go_on: GoOn<'_>| {
-        input.make(|polygon, map| fit_fair(polygon, map, repeated, options, request, go_on))
+        input.make(|polygon, map| {
+            let options = FairOptions { constraints: given.at_nodes(&polygon, &map)?, ..options };
+            fit_fair(polygon, map, repeated, &options, request, go_on)
+        })
     };
     let made = interruptible(py, size, fit)?.map_err(fit_error)?;
     match made.unsolved {

@@ -12,6 +12,7 @@ use pyo3::prelude::*;
 
 mod asked;
 mod catmull_rom;
+mod constraints;
 mod curve;
 mod diagnostics;
 mod error;

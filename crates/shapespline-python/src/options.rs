@@ -169,6 +169,9 @@ pub(crate) fn resolution(object: &Bound<'_, PyAny>) -> PyResult<f64> {
 pub(crate) fn optional_resolution(object: &Bound<'_, PyAny>) -> PyResult<Option<f64>> {
     if object.is_none() { Ok(None) } else { resolution(object).map(Some) }
 }
+pub(crate) fn max_deviation(object: &Bound<'_, PyAny>) -> PyResult<Option<f64>> {
+    if object.is_none() { Ok(None) } else { float("max_deviation", object).map(Some) }
+}
 pub(crate) fn coplanarity(object: &Bound<'_, PyAny>) -> PyResult<f64> {
     float("coplanarity", object)
 }

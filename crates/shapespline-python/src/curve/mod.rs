@@ -94,6 +94,10 @@ pub(crate) trait Curve: Debug + Send + Sync {
     fn nodes(&self) -> Option<&[usize]> {
         None
     }
+    /// The nodes at which there are corners.
+    fn corners(&self) -> &[usize] {
+        &[]
+    }
     fn polygon(&self) -> Result<DataPolygon, InputError>;
     fn is_sound(&self) -> bool;
     /// Appends the curve in postcard's form.
@@ -157,6 +161,9 @@ impl Curve for FairSpline {
     }
     fn nodes(&self) -> Option<&[usize]> {
         Some(self.nodes())
+    }
+    fn corners(&self) -> &[usize] {
+        self.corners()
     }
     fn polygon(&self) -> Result<DataPolygon, InputError> {
         self.polygon()

@@ -139,6 +139,7 @@ impl Subject {
                         tolerances,
                         INTERPOLATION,
                     )
+                    .map(|checker| checker.with_free_nodes(curve.corners()))
                     .map(|checker| work(Judge::Other(checker, &curve.map)))
                     .map_err(|error| placed(&curve.map, error));
                 }
