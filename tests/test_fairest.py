@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 
 import cases
+import polygons
 import shapespline as ss
+from scale import scaled as how_many
 
 #: those of the families that search
 SEARCHED = [
@@ -106,3 +108,30 @@ def test_default_is_fairest():
     np.testing.assert_array_equal(
         case.preserve().tension, case.preserve(strategy="fairest").tension
     )
+
+
+def bends(curve):
+    fairness = curve.fairness()
+    return fairness.bending / fairness.length
+
+
+SUBSETS = [("convexity", "inflection"), ("torsion",), ("turning", "coplanarity"), ("convexity",)]
+
+
+@pytest.mark.parametrize("family", [ss.NuSpline, ss.TensionSpline])
+@pytest.mark.parametrize("criteria", SUBSETS, ids=str)
+def test_fewer_criteria_never_bend_more(family, criteria, rng):
+    """Where any tension is needed at all: else the curve is the plain spline."""
+    walks = [np.array([[4, 3, 3], [2, 4, -3], [4, -2, -4], [4, 0, -4], [-4, -3, 0.0]])]
+    walks += [polygons.random_walk(rng, 12, 2 + k % 2) for k in range(how_many(200))]
+    searched = 0
+    for points in walks:
+        fewer = family.shape_preserving(points, criteria=criteria)
+        assert fewer.check().ok
+        assert set(fewer._fit_options()["criteria"]) == set(criteria)
+        if not fewer.tension.any():
+            continue
+        searched += 1
+        every = family.shape_preserving(points)
+        assert bends(fewer) <= bends(every) * (1 + 1e-6)
+    assert searched > 3

@@ -6,8 +6,8 @@ use std::ops::ControlFlow;
 use shapespline_geometry::InputError;
 use shapespline_geometry::{Boundary, DVec3, DataPolygon, PiecewiseCubic};
 use shapespline_search::{
-    Fit, FitError, Found, Interpolant, SearchOptions, SolvedFamily, Step, Tension, per_point,
-    search_and_report, solve_legs,
+    Fit, FitError, Found, Interpolant, SearchOptions, SolvedFamily, Step, Tension,
+    or_of_all_criteria, per_point, search_and_report, solve_legs,
 };
 
 use crate::system::NuSystem;
@@ -74,6 +74,15 @@ impl NuSpline {
     /// # Errors
     /// As [`NuSpline::shape_preserving`].
     pub fn shape_preserving_with(
+        polygon: DataPolygon,
+        options: &SearchOptions,
+        monitor: &mut dyn FnMut(&Step) -> ControlFlow<()>,
+    ) -> Result<Fit<Self>, FitError> {
+        let fit = Self::searched(polygon, options, monitor)?;
+        or_of_all_criteria(fit, options, |polygon, all| Self::searched(polygon, all, monitor))
+    }
+
+    fn searched(
         polygon: DataPolygon,
         options: &SearchOptions,
         monitor: &mut dyn FnMut(&Step) -> ControlFlow<()>,

@@ -22,6 +22,7 @@
 mod doubts;
 mod error;
 mod family;
+mod fewer;
 mod fronts;
 mod group;
 mod interpolant;
@@ -42,6 +43,7 @@ mod work;
 
 pub use error::FitError;
 pub use family::{TensionFamily, velocity_weight};
+pub use fewer::or_of_all_criteria;
 pub use interpolant::Interpolant;
 pub use many::{Collection, fit_many};
 pub use options::{SearchOptions, Strategy};

@@ -8,8 +8,8 @@ use shapespline_geometry::{
     Boundary, DVec3, DataPolygon, InputError, PiecewiseCubic, ReparametrizedCubic,
 };
 use shapespline_search::{
-    Fit, FitError, Found, Interpolant, SearchOptions, SolvedFamily, Step, Tension, per_point,
-    search_and_report, solve_legs,
+    Fit, FitError, Found, Interpolant, SearchOptions, SolvedFamily, Step, Tension,
+    or_of_all_criteria, per_point, search_and_report, solve_legs,
 };
 
 use crate::system::MannisSystem;
@@ -132,6 +132,15 @@ impl TensionSpline {
     /// # Errors
     /// As [`TensionSpline::shape_preserving`].
     pub fn shape_preserving_with(
+        polygon: DataPolygon,
+        options: &SearchOptions,
+        monitor: &mut dyn FnMut(&Step) -> ControlFlow<()>,
+    ) -> Result<Fit<Self>, FitError> {
+        let fit = Self::searched(polygon, options, monitor)?;
+        or_of_all_criteria(fit, options, |polygon, all| Self::searched(polygon, all, monitor))
+    }
+
+    fn searched(
         polygon: DataPolygon,
         options: &SearchOptions,
         monitor: &mut dyn FnMut(&Step) -> ControlFlow<()>,

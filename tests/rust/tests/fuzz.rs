@@ -8,8 +8,8 @@ use shapespline_tests::{
     generate::Random,
 };
 
-/// No input of this size may take longer, on any machine that runs tests.
-const LIMIT: Duration = Duration::from_secs(5);
+/// What takes longer than this hangs, on the slowest and busiest machine.
+const LIMIT: Duration = Duration::from_secs(120);
 
 /// How many inputs are generated for a target: `FUZZ_INPUTS` for a longer run by hand.
 fn inputs() -> usize {
