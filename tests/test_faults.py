@@ -102,6 +102,7 @@ def work(n):
         u = np.random.default_rng(1).uniform(*curve.parameters[[0, -1]], 4 * n)
         curve(u), curve.curvature(u), curve.arc_length(), curve.sample(n, by="arc-length")
         assert curve.check().ok
+        curve.fairness()
     ss.check_shape(points, curve.to_bspline(), parameters=curve.parameters)
     ss.polygon_shape(points), ss.inflection_count(points[:500])
     ss.fit_many(points, np.arange(0, n + 1, n // 10))
@@ -110,7 +111,7 @@ def work(n):
         f(u), f.inverse(f(t[:50])), f.roots(), f.integrate(0, 1)
         function(t[:100], np.tile(t[:100, None], (1, 50)))
 
-sizes = [60, 6000, 40000]
+sizes = [60, 700, 4000, 6000, 40000]
 for n in sizes:
     work(n)  # makes the parent's threads
 child = os.fork()

@@ -184,7 +184,8 @@ pub(crate) fn preserve_fair(
     given: &Given,
     request: &Request,
 ) -> PyResult<SpaceCurve> {
-    let (size, repeated) = (input.0.points.len(), input.0.repeated);
+    // A fair curve has up to three pieces per segment.
+    let (size, repeated) = (3 * input.0.points.len(), input.0.repeated);
     let fit = |go_on: GoOn<'_>| {
         input.make(|polygon, map| {
             let options = FairOptions { constraints: given.at_nodes(&polygon, &map)?, ..options };

@@ -68,7 +68,8 @@ fn run<'py>(
             .map_err(Box::new)
     };
     let longest = (0..points.len()).map(|k| points.range(k).len()).max().unwrap_or(0);
-    let fits = if threads.is_none() && longest < PARALLEL {
+    // A fair curve has up to three pieces per segment.
+    let fits = if threads.is_none() && 3 * longest < PARALLEL {
         interruptible_each(py, points.len(), fit)?
     } else {
         let fit_all = |ask: GoOn<'_>| points.map(threads, |k, _| fit(k, ask));

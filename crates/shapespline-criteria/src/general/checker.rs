@@ -14,6 +14,10 @@ use crate::{
     rounding::{LEG_ERROR, Lean, UNIT},
 };
 
+/// Segments from on which they are checked on all threads. Not fewer, and none of rayon's iterators below:
+/// Python calls small work where it stands, and after a fork the threads of rayon's own pool are gone.
+const MANY: usize = 8192;
+
 /// How far from the points a curve may pass by default, over the extent of the points.
 pub const INTERPOLATION: f64 = 1e-9;
 
@@ -139,12 +143,13 @@ impl<'a> CurveChecker<'a> {
             return Some(self.report_on_cubics());
         }
         let of = |i: usize| go_on().is_continue().then(|| self.check_segment(i));
-        let found: Vec<Found> = (0..self.checker.calls().len())
-            .into_par_iter()
-            .with_min_len(64)
-            .map(of)
-            .filter(|found| found.as_ref().is_none_or(|found| !found.is_empty()))
-            .collect::<Option<_>>()?;
+        let says = |found: &Option<Found>| found.as_ref().is_none_or(|found| !found.is_empty());
+        let segments = 0..self.checker.calls().len();
+        let found: Vec<Found> = if segments.len() < MANY {
+            segments.map(of).filter(says).collect::<Option<_>>()?
+        } else {
+            segments.into_par_iter().with_min_len(64).map(of).filter(says).collect::<Option<_>>()?
+        };
         let mut report = self.checker.blank_report();
         for Found { records, undecided } in found {
             for record in &records {

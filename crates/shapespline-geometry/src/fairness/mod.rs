@@ -27,7 +27,7 @@ const CONTINUOUS: f64 = 1e-9;
 
 /// Curves of this many pieces are measured on all threads. Shorter ones stay on the calling thread: rayon's
 /// threads do not survive a fork.
-const PARALLEL: usize = 512;
+const PARALLEL: usize = 8192;
 
 /// A place on a piecewise curve.
 #[derive(Debug, Clone, Copy, PartialEq)]
