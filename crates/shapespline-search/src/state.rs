@@ -11,8 +11,9 @@ use shapespline_geometry::DVec3;
 
 use crate::{Diagnostics, Outcome, Phase, Status, Step, TensionFamily, doubts::Doubts};
 
-/// Touched neighbourhoods from which on they are checked on all threads.
-const MANY: usize = 256;
+/// Touched neighbourhoods from which on they are checked on all threads. Not fewer: after a fork the threads of
+/// rayon's own pool are gone, and Python enters its own for work of this size only.
+const MANY: usize = 8192;
 
 /// Segments on either side of a change of tension that a look takes in: what is further away hardly
 /// feels it.
