@@ -24,6 +24,8 @@ from scipy.interpolate import CubicSpline, make_interp_spline
 import shapespline as ss
 
 sys.path.insert(0, str(Path(__file__).parent.parent))
+from fair import fair
+
 import polygons
 
 
@@ -305,6 +307,7 @@ def main() -> int:
         evaluating([25, *sizes], largest),
         families([n for n in sizes if n >= 10_000], largest),
         collections(),
+        fair(largest),
         monotone_building(largest),
         monotone_evaluating(sizes, largest),
         monotone_small(),
