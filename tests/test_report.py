@@ -128,6 +128,19 @@ def test_a_printed_report_measures_the_curve_beside_the_cubic(family, dim, rng):
     assert other.splitlines()[-3:] == own.splitlines()[-3:]
 
 
+@pytest.mark.parametrize("family", [ss.NuSpline, ss.TensionSpline])
+def test_a_printed_report_names_practical_corners(family, rng):
+    points = polygons.random_walk(rng, 9, 3)
+    option = {"tension": 1e5} if family is ss.NuSpline else {"tangent_scale": 1e-4}
+    values = np.full(9, 0.0 if family is ss.NuSpline else 1.0)
+    values[[2, 6]] = next(iter(option.values()))
+    curve = family(points, **{next(iter(option)): values})
+    assert str(curve.check()).endswith("practically corners: points 2, 6")
+    other = ss.check_shape(points, ss.PiecewiseBezier(curve.bezier, curve.knots))
+    assert str(other).endswith("practically corners: points 2, 6")
+    assert "corners" not in str(ss.FairSpline(points).check())
+
+
 def test_a_long_report_is_printed_without_measures():
     text = str(ss.NuSpline(polygons.gentle_track(1100)).check())
     assert "fairness" not in text

@@ -37,7 +37,8 @@ const MEASURED: usize = 1000;
 /// Holds the violations, what stays open, and counts; the records of all segments and the notes on
 /// nodes are made when asked for. Prints as a table, with the energy ∫κ²ds and the largest curvature of
 /// the curve, if it has at most 1000 segments, beside those of the C² cubic spline with the same parameters
-/// and ends. Immutable and picklable.
+/// and ends; and the points that are practically corners, where curvature times chord exceeds 100. Immutable
+/// and picklable.
 ///
 /// Examples
 /// --------
@@ -264,6 +265,13 @@ impl ShapeReport {
             text += &format!("\n{:<17}{:>10}{:>12}", "fairness", "curve", "C² cubic");
             text += &line("energy ∫κ²ds", |found| found.bending / found.length);
             text += &line("max. curvature", |found| found.max_curvature);
+            let sharp = self.subject.sharp_points(&own);
+            if !sharp.is_empty() {
+                let few: Vec<String> = sharp.iter().take(8).map(usize::to_string).collect();
+                let more = if sharp.len() > few.len() { ", …" } else { "" };
+                let points = if sharp.len() == 1 { "point" } else { "points" };
+                text += &format!("\npractically corners: {points} {}{more}", few.join(", "));
+            }
         }
         Ok(text)
     }
