@@ -6,6 +6,7 @@ import pickle
 import numpy as np
 import pytest
 
+import polygons
 import shapespline as ss
 from polygons import DATA
 
@@ -154,3 +155,17 @@ def test_a_real_track_is_fairer_than_with_tension():
     fair, tense = ss.FairSpline(track), ss.NuSpline.shape_preserving(track)
     assert fair.check().ok
     assert fair.fairness().max_curvature < 0.1 * tense.fairness().max_curvature
+
+
+def test_long_curves_cost_what_their_violations_do():
+    """A few sharp corners on a long track: all else is the plain cubic, bit for bit."""
+    points = polygons.gentle_track(20_000, kinks=0.0004)
+    plain, curve = ss.NuSpline(points), ss.FairSpline(points)
+    assert curve.check().ok
+    failing = np.unique([v.segment for v in plain.check().violations])
+    assert 0 < len(failing) < 100
+    far = np.abs(np.arange(len(points) - 1)[:, None] - failing).min(axis=1) > 130
+    assert far.sum() > 15_000
+    first = np.searchsorted(curve.knots, curve.parameters[:-1])
+    legs = [np.diff(pieces[:, :2], axis=1) for pieces in (curve.bezier[first], plain.bezier)]
+    np.testing.assert_allclose(legs[0][far], legs[1][far], rtol=0, atol=1e-12)

@@ -64,6 +64,10 @@ pub(crate) fn climb(
     Ok(found)
 }
 
+/// Free nodes beside a failing segment in the widest windows short of the whole curve: in these, too, all
+/// is put to the closed-form start if nothing else helps.
+const WIDE: usize = 16 * BESIDE;
+
 impl Found {
     /// The segments in which the plain cubic fails.
     fn failing(&self, demands: &Demands<'_>) -> Vec<usize> {
@@ -120,24 +124,29 @@ impl Found {
         let mut failing = self.failing(demands);
         self.open.clone_from(&failing);
         let count = self.nodes.len();
-        for beside in [BESIDE, 4 * BESIDE, count] {
+        for beside in [BESIDE, 4 * BESIDE, WIDE, count] {
             let mut unsolved = Vec::new();
             for window in windows(&failing, count, polygon.is_closed(), beside) {
                 let whole = window.count == count;
+                let thorough = whole || beside == WIDE;
                 let mut chain = window.chain(demands, &self.plain, rules);
                 let plain = chain.nodes.clone();
                 let own = || failing.iter().copied().filter(|&k| window.touches(k, count));
-                let Some(method) = solve(demands, &mut chain, whole, control) else {
+                let Some(method) = solve(demands, &mut chain, thorough, control) else {
                     unsolved.extend(own());
                     continue;
                 };
                 finish_parametric(demands, &mut chain, &plain, control);
                 let mut open = certify(demands, &mut chain, control);
+                let last = if open.is_empty() || !thorough {
+                    None
+                } else {
+                    fall_back(demands, &mut chain, &mut open, control)
+                };
                 if !open.is_empty() && !whole {
                     unsolved.extend(own());
                     continue;
                 }
-                let last = fall_back(demands, &mut chain, &mut open, control);
                 self.put(&chain, last.unwrap_or(method));
                 self.open.retain(|&k| !window.touches(k, count));
                 self.open.extend(open);

@@ -104,8 +104,6 @@ pub struct Diagnostics {
     /// The same of the plain C² cubic with the same parameters and ends: a lower bound of the parametric
     /// energy of any curve through the data.
     pub energy_cubic: f64,
-    /// The largest curvature, per unit of length.
-    pub max_curvature: f64,
     /// Knots beside those at the data points.
     pub extra_knots: usize,
     /// The criteria that hold the curve back, each with the segments where it does.

@@ -27,12 +27,12 @@ const ROUNDS: usize = 4;
 /// Bending energy times length above which a segment does: half a turn evenly spread has π².
 const SLOW: f64 = 20.0;
 
-/// Finds a feasible chain, and brings its parametric energy down. The method that it took, or nothing
+/// Finds a feasible chain (by all means if it is to be `thorough`), and brings its parametric energy down. The method that it took, or nothing
 /// where it takes a wider chain; the whole curve always has an answer.
 pub(crate) fn solve(
     demands: &Demands<'_>,
     chain: &mut Chain,
-    whole: bool,
+    thorough: bool,
     control: &mut Control<'_>,
 ) -> Option<Method> {
     let mut method = Method::Elastic;
@@ -52,7 +52,7 @@ pub(crate) fn solve(
     }
     control.begin(Phase::Improve, chain.failing().len());
     if !chain.all_hold() {
-        if !whole {
+        if !thorough {
             return None;
         }
         method = Method::Sweeps;

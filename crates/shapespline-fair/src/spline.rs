@@ -7,7 +7,7 @@ use shapespline_criteria::{
 };
 use shapespline_geometry::{
     Boundary, DVec3, DataPolygon, Dimension, InputError, Parametrization, PiecewiseBezier,
-    PiecewiseCubic, Side, fairness,
+    PiecewiseCubic, Side,
 };
 
 use crate::{
@@ -135,7 +135,6 @@ impl FairSpline {
             solves: control.solves,
             energy: whole.energy,
             energy_cubic: whole.energy_cubic,
-            max_curvature: fairness(&PiecewiseBezier::from(&curve.curve)).max_curvature,
             extra_knots: curve.curve.knots().len() - curve.nodes.len(),
             active: active(&whole.active),
             tangent_scale: whole.tangent_scale,

@@ -42,7 +42,9 @@ pub use arc_length::ArcLength;
 pub use boundary::Boundary;
 pub use curve::Curve;
 pub use error::{Coordinates, InputError};
-pub use fairness::{CurvatureExtremum, Fairness, Place, fairness, fairness_with};
+pub use fairness::{
+    CurvatureExtremum, Fairness, Place, fairness, fairness_with, largest_curvature,
+};
 pub use frame::Frame;
 pub use glam::{DVec3, DVec4};
 pub use input::{InputMap, InputPoints, Repeated};

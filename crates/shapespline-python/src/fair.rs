@@ -8,7 +8,7 @@ use pyo3::{
 use shapespline::{
     criteria::Criteria,
     fair::{self, Energy, FairOptions, Phase, Status},
-    geometry::{InputMap, Repeated},
+    geometry::{InputMap, Repeated, largest_curvature},
 };
 
 use crate::{
@@ -228,15 +228,21 @@ pub(crate) struct FairDiagnostics {
     found: fair::Diagnostics,
     dropped: Vec<usize>,
     parametric: bool,
+    max_curvature: f64,
 }
 
 impl FairDiagnostics {
-    pub(crate) fn of(found: &fair::Diagnostics, map: &InputMap, parametric: bool) -> Self {
+    pub(crate) fn of(found: &fair::Diagnostics, map: &InputMap, curve: &fair::FairSpline) -> Self {
         let mut found = found.clone();
         for segment in found.active.iter_mut().flat_map(|(_, segments)| segments) {
             *segment = map.segment(*segment);
         }
-        Self { found, dropped: map.dropped().to_vec(), parametric }
+        Self {
+            found,
+            dropped: map.dropped().to_vec(),
+            parametric: curve.energy() == Energy::Parametric,
+            max_curvature: largest_curvature(curve.curve()),
+        }
     }
 }
 
@@ -321,7 +327,7 @@ impl FairDiagnostics {
     /// The largest curvature, per unit of length.
     #[getter]
     fn max_curvature(&self) -> f64 {
-        self.found.max_curvature
+        self.max_curvature
     }
 
     fn __repr__(&self) -> String {

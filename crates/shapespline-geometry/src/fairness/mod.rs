@@ -9,6 +9,7 @@
 //! H. P. Moreton, C. H. Séquin, *Functional optimization for fair surface design*, Computer Graphics 26
 //! (1992) 167–176, doi:10.1145/133994.134035 (the variation of curvature).
 
+mod largest;
 mod piece;
 
 use std::ops::ControlFlow;
@@ -308,3 +309,5 @@ impl Fairness {
 
 #[cfg(test)]
 mod tests;
+
+pub use largest::largest_curvature;

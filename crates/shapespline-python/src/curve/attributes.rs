@@ -4,7 +4,7 @@ use numpy::PyArray1;
 use pyo3::{IntoPyObjectExt, exceptions::PyAttributeError, prelude::*, types::PyDict};
 use shapespline::{
     criteria::Criterion,
-    fair::{Energy, FairSpline},
+    fair::FairSpline,
     geometry::{Boundary, Dimension, Repeated},
 };
 
@@ -157,9 +157,11 @@ impl SpaceCurve {
             None => Diagnostics::given(dropped).into_py_any(py),
             Some(Work::Tension(found, _)) => Diagnostics::of(found, dropped).into_py_any(py),
             Some(Work::Fair(found, _)) => {
-                let curve = self.curve.as_any().downcast_ref::<FairSpline>();
-                let parametric = curve.is_some_and(|c| c.energy() == Energy::Parametric);
-                FairDiagnostics::of(found, &self.curve.map, parametric).into_py_any(py)
+                let Some(curve) = self.curve.as_any().downcast_ref::<FairSpline>() else {
+                    return Ok(None);
+                };
+                let of = || FairDiagnostics::of(found, &self.curve.map, curve);
+                detached(py, 0, of).into_py_any(py)
             }
         }
         .map(Some)
