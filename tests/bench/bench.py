@@ -307,7 +307,7 @@ def main() -> int:
         evaluating([25, *sizes], largest),
         families([n for n in sizes if n >= 10_000], largest),
         collections(),
-        fair(largest),
+        fair(largest // 10),
         monotone_building(largest),
         monotone_evaluating(sizes, largest),
         monotone_small(),
