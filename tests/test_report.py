@@ -122,7 +122,7 @@ def test_a_printed_report_measures_the_curve_beside_the_cubic(family, dim, rng):
         energy, largest = lines["energy ∫κ²ds"][k], lines["max. curvature"][k]
         assert float(energy) == pytest.approx(found.bending / found.length, rel=1e-3)
         assert float(largest) == pytest.approx(found.max_curvature, rel=1e-3)
-    # The same is said of the curve's pieces, whoever made them.
+    # A check of the curve's pieces prints the same numbers.
     pieces = ss.PiecewiseBezier(curve.bezier, curve.knots)
     other = str(ss.check_shape(points, pieces, parameters=curve.parameters))
     assert other.splitlines()[-3:] == own.splitlines()[-3:]

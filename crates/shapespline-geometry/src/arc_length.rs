@@ -143,7 +143,7 @@ impl<'a, C: Curve + ?Sized> ArcLength<'a, C> {
         measured.unwrap_or_else(|| Self { curve, upto: vec![0.0] })
     }
 
-    /// The same, or nothing if `go_on`, which is asked before each segment, breaks off.
+    /// As [`ArcLength::new`], but calls `go_on` before each segment, and returns `None` once that breaks.
     #[must_use]
     pub fn new_with(curve: &'a C, go_on: &(dyn Fn() -> ControlFlow<()> + Sync)) -> Option<Self> {
         let cubic = curve.cubic();

@@ -129,7 +129,7 @@ fn no_tension_of_a_fairest_curve_can_be_lowered() {
                 }
             }
             let full = lowered(node, 1.0).unwrap();
-            // What is further away hardly feels it.
+            // The effect of a change decays quickly with distance.
             let near = node.saturating_sub(4)..(node + 4).min(least.len());
             let [less, full] = [bending(&least[near.clone()]), bending(&full[near])];
             if less > full * (1.0 - 1e-3) {

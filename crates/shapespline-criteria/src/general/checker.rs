@@ -135,8 +135,8 @@ impl<'a> CurveChecker<'a> {
         report.unwrap_or_else(|| self.checker.blank_report())
     }
 
-    /// As [`CurveChecker::report`], with a question whether to go on, which is asked before each segment
-    /// that is not one cubic (from any thread); no report if it breaks off.
+    /// As [`CurveChecker::report`], but calls `go_on` before each segment that is not one cubic (from any
+    /// thread), and returns `None` once that breaks.
     #[must_use]
     pub fn report_with(&self, go_on: &(dyn Fn() -> ControlFlow<()> + Sync)) -> Option<ShapeReport> {
         if self.is_cubic() {
@@ -219,8 +219,8 @@ impl<'a> CurveChecker<'a> {
         self.notes_with(&|| ControlFlow::Continue(())).unwrap_or_default()
     }
 
-    /// As [`CurveChecker::notes`], with a question whether to go on, which is asked before each node and
-    /// segment; no notes if it breaks off.
+    /// As [`CurveChecker::notes`], but calls `go_on` before each node and segment, and returns `None` once
+    /// that breaks.
     #[must_use]
     pub fn notes_with(&self, go_on: &(dyn Fn() -> ControlFlow<()> + Sync)) -> Option<Notes> {
         notes(&self.checker, |i| self.segment(i), go_on)

@@ -122,8 +122,8 @@ impl Checker<'_> {
         self.notes_with(legs, &|| ControlFlow::Continue(())).unwrap_or_default()
     }
 
-    /// As [`Checker::notes`], with a question whether to go on, which is asked before each node and segment;
-    /// no notes if it breaks off.
+    /// As [`Checker::notes`], but calls `go_on` before each node and segment, and returns `None` once that
+    /// breaks.
     pub fn notes_with<L>(
         &self,
         legs: L,

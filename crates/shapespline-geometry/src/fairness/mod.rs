@@ -85,8 +85,8 @@ pub fn fairness(curve: &PiecewiseBezier) -> Fairness {
     Summary::of(&measured.unwrap_or_default()).in_units_of(unit)
 }
 
-/// As [`fairness`], with a question whether to go on, which is asked before each piece (from any thread);
-/// nothing if it breaks off.
+/// As [`fairness`], but calls `go_on` before each piece (from any thread), and returns `None` once that
+/// breaks.
 #[must_use]
 pub fn fairness_with(
     curve: &PiecewiseBezier,
