@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shapespline._core import PiecewiseBezier
+from shapespline._core import FairSpline, PiecewiseBezier
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -86,3 +86,38 @@ def fewest_knots(control: Floats, breaks: Floats) -> tuple[Floats, Floats]:
             break
         smooth = np.where(at, np.maximum(smooth - 1, 0) if attempt < ROUNDS else 0, smooth)
     return knots, points
+
+
+def _fair_smoothness(curve: FairSpline) -> NDArray[np.int64]:
+    """Return how many derivatives of a fair curve agree at each knot, the two ends included."""
+    return np.where(np.isin(curve.knots, curve.parameters[list(curve.corners)]), 0, 2)
+
+
+def fair_knots(curve: FairSpline) -> tuple[Floats, Floats]:
+    """Return the knots and the control points of a fair curve, whose ends are fourfold.
+
+    It is C² but for its corners by its making, so that nothing has to be compared.
+    """
+    return _blossoms(curve.bezier, curve.knots, _fair_smoothness(curve)[1:-1])
+
+
+def of_fair_spline(curve: FairSpline) -> tuple[Floats, Floats]:
+    """Return the same, but where a closed curve has no corner at its seam with knots that go on.
+
+    Three knots more on both sides then repeat the others, and the last three control points the
+    first.
+    """
+    smooth = _fair_smoothness(curve)
+    if curve.boundary != "periodic" or smooth[0] == 0 or smooth[-1] == 0:
+        return fair_knots(curve)
+    # Three pieces before and behind, and more turns where one has fewer.
+    pieces, knots = len(curve.knots) - 1, curve.knots
+    index = np.arange(-3, pieces + 3)
+    turns = np.arange(-3, pieces + 4) // pieces
+    breaks = knots[np.arange(-3, pieces + 4) % pieces] + turns * (knots[-1] - knots[0])
+    breaks[3 : pieces + 4] = knots
+    around = smooth[:-1][index[1:] % pieces]
+    t, c = _blossoms(curve.bezier[index % pieces], breaks, around)
+    first, last = np.searchsorted(t, knots[[0, -1]])
+    shape = (last - first + 3, c.shape[1])
+    return t[first - 3 : last + 4], np.resize(c[first - 3 : last - 3], shape)

@@ -19,8 +19,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from shapespline._bspline import fewest_knots
+from shapespline._bspline import fair_knots, fewest_knots
 from shapespline._convert import piecewise
+from shapespline._core import FairSpline
 from shapespline._errors import InputError
 
 if TYPE_CHECKING:
@@ -92,7 +93,8 @@ def bspline(curve: Any) -> BSplineData:
     -------
     BSplineData
         Inner knots are degree-fold, one less for each derivative that is continuous to rounding: a
-        C² cubic has simple ones. Those of a rational curve are degree-fold.
+        C² cubic has simple ones, a `FairSpline` always, but for its corners. Those of a rational
+        curve are degree-fold.
 
     Raises
     ------
@@ -103,7 +105,7 @@ def bspline(curve: Any) -> BSplineData:
 
     See Also
     --------
-    SpaceCurve.to_bspline : a SciPy ``BSpline``, with triple knots.
+    SpaceCurve.to_bspline : a SciPy ``BSpline``, with triple knots (but of a `FairSpline`).
 
     Notes
     -----
@@ -120,6 +122,8 @@ def bspline(curve: Any) -> BSplineData:
     >>> BSpline(data.knots, data.control, data.degree)(1.0).round(12)
     array([1., 1.])
     """
+    if isinstance(curve, FairSpline):
+        return BSplineData(*fair_knots(curve), 3, None)
     pieces = piecewise(curve)
     control, breaks, degree = pieces.control, pieces.breaks, pieces.degree
     gaps = np.abs(control[1:, 0] - control[:-1, -1]).max(axis=1, initial=0.0)

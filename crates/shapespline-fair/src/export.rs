@@ -22,7 +22,7 @@ pub(crate) struct Pieces {
 
 /// A jump of the third derivative counts as rounding where it changes the second by less than this share of its
 /// largest value on the segment.
-const SMOOTH: f64 = 1e-11;
+const SMOOTH: f64 = 1e-12;
 
 impl Pieces {
     /// One piece between two points.

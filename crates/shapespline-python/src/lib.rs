@@ -17,6 +17,7 @@ mod curve;
 mod diagnostics;
 mod error;
 mod fair;
+mod fair_diagnostics;
 mod fairness;
 mod fit;
 mod input;
@@ -47,8 +48,8 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<tension::TensionSpline>()?;
     module.add_class::<catmull_rom::CatmullRom>()?;
     module.add_class::<fair::FairSpline>()?;
-    module.add_class::<fair::FairDiagnostics>()?;
-    module.add_class::<fair::FairStep>()?;
+    module.add_class::<fair_diagnostics::FairDiagnostics>()?;
+    module.add_class::<fair_diagnostics::FairStep>()?;
     module.add_class::<tangents::Tangents>()?;
     module.add_class::<piecewise::PiecewiseBezier>()?;
     module.add_class::<fairness::Fairness>()?;

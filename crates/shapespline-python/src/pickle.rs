@@ -13,7 +13,7 @@ use crate::{
     curve::{Family, Fitted, SpaceCurve},
     diagnostics::{Diagnostics, Search, SearchStep},
     error::{Value, invalid},
-    fair::{FairDiagnostics, FairStep},
+    fair_diagnostics::{FairDiagnostics, FairStep},
     fairness::Fairness,
     monotone::{Fits, Layout, MonotoneDiagnostics, PiecewisePolynomial, PiecewiseRows},
     piecewise::PiecewiseBezier,

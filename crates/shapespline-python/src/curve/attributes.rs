@@ -13,7 +13,7 @@ use crate::{
     asked::{Asked, Given},
     diagnostics::{Diagnostics, SearchStep, Work},
     error::input_error,
-    fair::{FairDiagnostics, FairStep},
+    fair_diagnostics::{FairDiagnostics, FairStep},
     options::{self, CriteriaNames},
     output::{FloatArray, vectors},
     report::{ShapeReport, Subject},

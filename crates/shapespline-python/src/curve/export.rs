@@ -62,7 +62,8 @@ impl SpaceCurve {
     /// scipy.interpolate.BSpline
     ///     Cubic, with triple interior knots, whose coefficients are the Bézier points: the same curve
     ///     to the last rounding. Closed curves extrapolate periodically. Of a `TensionSpline` it is
-    ///     the same image, but the parameter is that of its ``image_parameter``.
+    ///     the same image, but the parameter is that of its ``image_parameter``. A `FairSpline` gives
+    ///     simple knots.
     ///
     /// Raises
     /// ------
