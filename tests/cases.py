@@ -79,7 +79,8 @@ class Case:
         """Return the case with other points, and its end tangents passed through ``vectors``."""
         boundary = self.boundary
         if isinstance(boundary, ss.Tangents):
-            boundary = ss.Tangents(vectors(boundary.start), vectors(boundary.end))
+            ends = (boundary.start, boundary.end)
+            boundary = ss.Tangents(*(None if v is None else vectors(v) for v in ends))
         return replace(self, points=points, boundary=boundary)
 
     def reversed(self) -> "Case":
@@ -87,7 +88,8 @@ class Case:
         u = self.fit().parameters
         boundary = self.boundary
         if isinstance(boundary, ss.Tangents):
-            boundary = ss.Tangents(-boundary.end, -boundary.start)
+            ends = (boundary.end, boundary.start)
+            boundary = ss.Tangents(*(None if v is None else -v for v in ends))
         return replace(
             self,
             points=self.points[::-1],
@@ -124,6 +126,7 @@ def small() -> list[Case]:
     rng = np.random.default_rng(3)
     walk = polygons.random_walk(rng, 14)
     plane = polygons.random_walk(rng, 14, 2)
+    start = 1.3 * (walk[1] - walk[0]) - 0.4 * (walk[2] - walk[1])
     return [
         gm_line(),
         helix(),
@@ -135,6 +138,8 @@ def small() -> list[Case]:
         Case("plane, zero curvature", plane),
         Case("plane, closed", polygons.close(plane), "uniform", "periodic"),
         Case("plane, tangents", plane, "chordal", ss.Tangents([1.0, 0.5], [-0.2, 2.0])),
+        Case("walk, start tangent", walk, "chordal", ss.Tangents(start)),
+        Case("plane, end tangent", plane, "chordal", ss.Tangents(end=[-0.2, 2.0])),
     ]
 
 

@@ -21,7 +21,7 @@ Array = npt.NDArray[np.float64]
 #: ``derivative(u, order, side)`` for an array of parameters: values of shape ``u.shape + (dim,)``.
 Derivative = Callable[[Array, int, str], Array]
 #: ``None`` (zero curvature), ``"periodic"``, or the two end tangents.
-Boundary = str | tuple[npt.ArrayLike, npt.ArrayLike] | None
+Boundary = str | tuple[npt.ArrayLike | None, npt.ArrayLike | None] | None
 
 CRITERIA = ("convexity", "inflection", "turning", "torsion", "coplanarity", "collinearity")
 # Derivatives of a cubic lose a few dozen units in the last place before they arrive here.
@@ -80,13 +80,15 @@ def data_polygon(
     spacing = np.diff(np.asarray(parameters, dtype=float))
     chords = np.diff(points, axis=0)
     closed = isinstance(boundary, str) and boundary == "periodic"
-    given = boundary is not None and not closed
+    ends = (None, None) if boundary is None or closed else boundary
+    given = np.array([end is not None for end in ends])
     if closed:
         first, last = chords[-1], chords[0]
         spacing = np.r_[spacing[-1], spacing, spacing[0]]
     else:
         # With zero curvature an end has no binormal: its chord follows itself.
-        first, last = (chords[0], chords[-1]) if boundary is None else map(in_space, boundary)
+        stand_ins = zip(ends, chords[[0, -1]], strict=True)
+        first, last = (own if end is None else in_space(end) for end, own in stand_ins)
         spacing = np.r_[spacing[0], spacing, spacing[-1]]
     chords = np.vstack([first, chords, last])
     # Components near 1e±100 must not overflow or vanish when squared.
@@ -94,9 +96,8 @@ def data_polygon(
     lengths = magnitude[:, 0] * norm(chords / magnitude)
     chords = chords / magnitude
     chords /= norm(chords)[:, None]
-    if given:
-        # A tangent is no chord. The chord that gives (5.9) the limit of (1 + ν) q = D is hD/6.
-        lengths[[0, -1]] *= spacing[[0, -1]] / 6
+    # A tangent is no chord. The chord that gives (5.9) the limit of (1 + ν) q = D is hD/6.
+    lengths[[0, -1]] *= np.where(given, spacing[[0, -1]] / 6, 1.0)
     binormals = np.cross(chords[:-1], chords[1:])
     binormals[norm(binormals) <= tolerance] = 0.0
     torsion = dot(np.cross(chords[:-2], chords[1:-1]), chords[2:])
@@ -105,8 +106,8 @@ def data_polygon(
     turning = dot(before, after)
     turning[np.abs(turning) <= tolerance * norm(before) * norm(after)] = 0.0
     straight = (norm(binormals) == 0.0) & (dot(chords[:-1], chords[1:]) > 0.0)
-    if boundary is None:
-        straight[[0, -1]] = False
+    if not closed:
+        straight[[0, -1]] &= given
     return Polygon(chords, lengths, spacing, binormals, torsion, turning, straight, closed)
 
 

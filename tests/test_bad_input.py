@@ -123,6 +123,7 @@ BAD_VALUES = {
     "NaN tangent": (lambda: ss.Tangents([0.0, np.nan, 1.0], [1, 0, 0]), ["start[1]", "nan"]),
     "infinite tangent": (lambda: ss.Tangents([0, 1, 0], [1, 0, np.inf]), ["end[2]", "inf"]),
     "zero tangent": (lambda: ss.Tangents([1, 0, 0], [0, 0, 0]), ["end", "zero"]),
+    "no tangent at all": (lambda: ss.Tangents(None, None), ["start", "natural"]),
     "tangents of two lengths": (lambda: ss.Tangents([1, 0, 0], [1, 0]), ["start", "end"]),
     "tangent of four components": (lambda: ss.Tangents([1] * 4, [1] * 4), ["start", "4"]),
     "negative tension": (fit(tension=changed(np.zeros(N), 4, -0.25)), ["tension[4]", "-0.25"]),

@@ -292,7 +292,7 @@ def test_bad_points(text, arguments, line, what, run, tmp_path):
         (["--criteria", "beauty"], "criteria must be one of"),
         (["--parameters", "chordial"], "parameters must be"),
         (["--samples", "1"], "--samples must be at least 2"),
-        (["--start-tangent", "1,0"], "go together"),
+        (["--start-tangent", "1,0,0", "--boundary", "natural"], "go without --boundary"),
         (["--start-tangent=1,0,0", "--end-tangent=0,0,1"], "start"),
         (["--plot", "o.gif"], "o.gif: the ending must be one of .png, .svg, .pdf"),
         (["--method=quintic", "--by", "arc-length", "-o", "-"], "--by arc-length is for curves"),

@@ -60,6 +60,13 @@ def test_pickling_the_small_objects():
     again = pickle.loads(pickle.dumps(tangents))
     np.testing.assert_array_equal(again.start, tangents.start)
     np.testing.assert_array_equal(again.end, tangents.end)
+    for one in (ss.Tangents([1, 2]), ss.Tangents(end=[1, 2, 3])):
+        again = pickle.loads(pickle.dumps(one))
+        assert again == one
+        assert hash(again) == hash(one)
+        assert (again.start is None, again.end is None) == (one.start is None, one.end is None)
+        assert eval(repr(one), {"Tangents": ss.Tangents}) == one
+    assert ss.Tangents([1, 2]) != ss.Tangents(end=[1, 2])
     report = cases.gm_line().fit().check()
     again = pickle.loads(pickle.dumps(report))
     assert again.to_dict() == report.to_dict()

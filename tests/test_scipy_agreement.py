@@ -12,7 +12,9 @@ import shapespline as ss
 def scipy_ends(case: cases.Case):
     """Return SciPy's name for the case's ends."""
     if isinstance(case.boundary, ss.Tangents):
-        return ((1, case.boundary.start), (1, case.boundary.end))
+        ends = (case.boundary.start, case.boundary.end)
+        nothing = np.zeros(np.shape(case.points)[1])
+        return tuple((2, nothing) if v is None else (1, v) for v in ends)
     return {"zero-curvature": "natural", "periodic": "periodic"}[case.boundary]
 
 

@@ -84,12 +84,13 @@ def test_with_one_scale_a_node_the_image_is_a_nu_spline(case, rng):
         nu[i] = at(h[i - 1], h[i], scale[i - 1], scale[i], scale[i + 1])
     if case.boundary == "periodic":
         nu[0] = nu[-1] = at(h[-1], h[0], scale[-2], scale[0], scale[1])
-    elif case.boundary == "zero-curvature":
-        # (2 + ν/2) λ T + λ' T' = 3L/h against (3 − λ') T + λ' T' = 3L/h.
-        nu[0] = 2 * ((3 - scale[1]) / scale[0] - 2)
-        nu[-1] = 2 * ((3 - scale[-2]) / scale[-1] - 2)
     else:
-        nu[[0, -1]] = 1 / scale[[0, -1]] - 1
+        # (2 + ν/2) λ T + λ' T' = 3L/h against (3 − λ') T + λ' T' = 3L/h.
+        natural = 2 * ((3 - scale[[1, -2]]) / scale[[0, -1]] - 2)
+        is_natural = case.boundary == "zero-curvature"
+        if isinstance(case.boundary, ss.Tangents):
+            is_natural = [case.boundary.start is None, case.boundary.end is None]
+        nu[[0, -1]] = np.where(is_natural, natural, 1 / scale[[0, -1]] - 1)
     other = replace(case, family=ss.NuSpline).fit(tension=nu)
     expected = scale[:, None] * curve.tangents
     size = np.abs(expected).max()

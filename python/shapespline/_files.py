@@ -166,7 +166,12 @@ def _boundary(document: _Document) -> Any:
     if set(given) != {"start", "end"}:
         document.fail("'boundary' must be a name or hold 'start' and 'end'", "boundary")
     try:
-        return Tangents(*(document.numbers(given[end], "boundary") for end in ("start", "end")))
+        return Tangents(
+            **{
+                end: None if tangent is None else document.numbers(tangent, "boundary")
+                for end, tangent in given.items()
+            }
+        )
     except InputError as error:
         document.fail(f"'boundary': {error}", "boundary")
 
@@ -232,7 +237,10 @@ def write_curve(path: Path, curve: Any) -> None:
         entries["parameters"] = curve.parameters.tolist()
         ends = curve.boundary
         entries["boundary"] = (
-            {"start": ends.start.tolist(), "end": ends.end.tolist()}
+            {
+                end: None if tangent is None else tangent.tolist()
+                for end, tangent in (("start", ends.start), ("end", ends.end))
+            }
             if isinstance(ends, Tangents)
             else ends
         )

@@ -96,8 +96,8 @@ def _ends(given: dict[str, Any]) -> dict[str, Any]:
     start, end = given.pop("start_tangent", None), given.pop("end_tangent", None)
     if start is None and end is None:
         return given
-    if start is None or end is None or "boundary" in given:
-        raise UsageError("--start-tangent and --end-tangent go together, and without --boundary")
+    if "boundary" in given:
+        raise UsageError("--start-tangent and --end-tangent go without --boundary")
     return {**given, "boundary": Tangents(start, end)}
 
 

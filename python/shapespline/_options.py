@@ -167,7 +167,8 @@ def add_fit_options(parser: argparse.ArgumentParser, methods: Iterable[str]) -> 
             f"--{end}-tangent",
             type=_vector,
             metavar="X,Y,Z",
-            help=f"tangent at the {end}; write --{end}-tangent=-1,0,0 for a negative number",
+            help=f"tangent at the {end}, which is natural otherwise; write "
+            f"--{end}-tangent=-1,0,0 for a negative number",
         )
     curve.add_argument(
         "--criteria", type=names, metavar="NAME,…", help="which criteria to keep and to check"

@@ -105,14 +105,13 @@ impl<'a> Handles<'a> {
     #[inline]
     fn freed(&self, segment: usize, [a, c]: [DVec3; 2]) -> [DVec3; 2] {
         let last = self.legs.len() - 1;
-        if self.polygon.is_closed()
-            || self.polygon.tangents().is_some()
-            || !(segment == 0 || segment == last)
-        {
+        if self.polygon.is_closed() || !(segment == 0 || segment == last) {
             return [a, c];
         }
+        let natural = self.polygon.tangents().map(|tangent| tangent.is_none());
         let scale = |is_end: bool, node: usize| is_end.then(|| self.scale(node));
-        let free = [scale(segment == 0, 0), scale(segment == last, last + 1)];
+        let free =
+            [scale(segment == 0 && natural[0], 0), scale(segment == last && natural[1], last + 1)];
         freed(self.polygon.chord(segment), [a, c], free)
     }
 }

@@ -204,11 +204,9 @@ impl StretchHandles {
             last.set(j, last.get(j) * at_end[j]);
         }
         // The ends of closed polygons are none.
-        if polygon.tangents().is_some() {
-            return;
-        }
+        let natural = polygon.tangents().map(|tangent| tangent.is_none());
         let [start, end] = ends(stretch, polygon);
-        let free = [start.map(|j| j + 1), end];
+        let free = [start.map(|j| j + 1).filter(|_| natural[0]), end.filter(|_| natural[1])];
         for j in free.into_iter().flatten().filter(|j| stretch.own().contains(j)) {
             let scale = |end: Option<usize>, factor: f64| (end == Some(j)).then_some(factor);
             let scales = [scale(free[0], at_start[j]), scale(free[1], at_end[j])];
@@ -277,7 +275,7 @@ mod tests {
             let bend = if k / 30 % 4 == 1 { 0.0 } else { (0.4 * t).sin() };
             DVec3::new(t, bend, lift)
         };
-        let tangents = Boundary::Tangents { start: DVec3::X, end: DVec3::Y };
+        let tangents = Boundary::tangents(DVec3::X, DVec3::Y);
         let ends = [Boundary::ZeroCurvature, Boundary::Circular, tangents, Boundary::Periodic];
         let mut shortened = [false; 4];
         for (n, planar, size) in [2, 3, 64, 65, 400]

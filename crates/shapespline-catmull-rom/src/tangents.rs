@@ -12,7 +12,7 @@ pub(crate) fn tangent(polygon: &DataPolygon, node: usize) -> Option<DVec3> {
     } else if polygon.is_closed() {
         (n - 1, 0)
     } else {
-        return polygon.tangents().map(|[start, end]| if node == 0 { start } else { end });
+        return polygon.tangents()[usize::from(node > 0)];
     };
     let chords = [polygon.chord(before), polygon.chord(after)];
     Some(tangent_between(chords, [polygon.spacing(before), polygon.spacing(after)]))

@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use glam::DVec3;
 use rayon::prelude::*;
-use shapespline_geometry::{Boundary, DataPolygon, Dimension, Stretch, length, normalize};
+use shapespline_geometry::{DataPolygon, Dimension, Stretch, length, normalize};
 
 use crate::{Criteria, Criterion, Tolerances, resolution::leave_known};
 
@@ -356,10 +356,7 @@ fn of_zeros(
             calls = calls.and(Calls::DOUBLING_BACK);
         } else {
             // (5.39): with zero curvature the ends have no line of their own.
-            let node = i + side;
-            let free = polygon.boundary() == Boundary::ZeroCurvature
-                && (node == 0 || node == polygon.segments());
-            if !free {
+            if !polygon.is_natural_end(i + side) {
                 calls = calls.and(call);
             }
         }
@@ -404,10 +401,8 @@ pub(crate) fn separation_between(
     let n = polygon.segments();
     let neighbour = |segment: usize, before: bool| -> f64 {
         let end = if before { segment == 0 } else { segment + 1 == n };
-        match (end && !polygon.is_closed(), polygon.tangents()) {
-            (true, Some([start, end])) => {
-                length(if before { start } else { end }) * polygon.spacing(segment) / 6.0
-            }
+        match (end && !polygon.is_closed(), polygon.tangents()[usize::from(!before)]) {
+            (true, Some(tangent)) => length(tangent) * polygon.spacing(segment) / 6.0,
             (true, None) => length(polygon.chord(segment)),
             (false, _) => {
                 let beside = if before { (segment + n - 1) % n } else { (segment + 1) % n };
@@ -432,7 +427,7 @@ pub(crate) fn plane_normal(p: DVec3, q: DVec3) -> DVec3 {
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used)]
-    use shapespline_geometry::Parametrization;
+    use shapespline_geometry::{Boundary, Parametrization};
 
     use super::*;
 

@@ -5,7 +5,7 @@ use shapespline_geometry::{
     Boundary, DVec3, DataPolygon, InputError, Parametrization, length, normalize,
 };
 
-use crate::{element::TAU, shape::off_chord};
+use crate::{element::TAU, shape::off_chord, window::is_given};
 
 /// What else the curve has to do.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -45,7 +45,7 @@ impl Constraints {
             }
             before = Some(corner);
         }
-        if polygon.tangents().is_some() && !self.corners.is_empty() {
+        if polygon.tangents() != [None; 2] && !self.corners.is_empty() {
             let allowed =
                 "empty where the ends have tangents: the parts between corners have natural ends";
             let value = self.corners[0] as f64;
@@ -53,8 +53,7 @@ impl Constraints {
         }
         let mut before = None;
         for (index, &(node, vector)) in self.tangents.iter().enumerate() {
-            let is_end = !inner(node) && polygon.tangents().is_some();
-            let clear = node < nodes && !is_end && !self.corners.contains(&node);
+            let clear = node < nodes && !is_given(polygon, node) && !self.corners.contains(&node);
             if !clear || !ascends(node, before) {
                 let (argument, value, allowed) = ("tangents", node as f64, ALLOWED_TANGENT);
                 return Err(InputError::OutOfRange { argument, index, value, allowed });
@@ -99,10 +98,10 @@ impl Constraints {
                 return Err(InputError::OutOfRange { argument, index, value, allowed });
             }
         }
-        let (Some(most), Some(tangents)) = (self.max_deviation, polygon.tangents()) else {
-            return Ok(());
-        };
-        for (segment, tangent, end) in [(0, tangents[0], 0.0), (n - 1, -tangents[1], 1.0)] {
+        let Some(most) = self.max_deviation else { return Ok(()) };
+        let [start, last] = polygon.tangents();
+        for (segment, tangent, end) in [(0, start, 0.0), (n - 1, last.map(|v| -v), 1.0)] {
+            let Some(tangent) = tangent else { continue };
             let chord = length(polygon.chord(segment));
             let leg = tangent * (TAU / 3.0 * polygon.spacing(segment) / chord);
             let needed = off_chord(leg, end, polygon.direction(segment)).length() * chord;

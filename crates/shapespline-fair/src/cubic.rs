@@ -24,10 +24,10 @@ pub(crate) fn plain_cubic(demands: &Demands<'_>) -> Result<Vec<Node>, SolveError
         let before = if i > 0 { i - 1 } else { n - 1 };
         if !polygon.is_closed() && (i == 0 || i == n) {
             let inner = if i == 0 { 0 } else { n - 1 };
-            match polygon.tangents() {
-                Some(tangents) => {
+            match polygon.tangents()[usize::from(i > 0)] {
+                Some(tangent) => {
                     diagonal[i] = 1.0;
-                    right[i] = to_units(tangents[usize::from(i > 0)], demands.units);
+                    right[i] = to_units(tangent, demands.units);
                 }
                 None => {
                     let off = if i == 0 { &mut upper } else { &mut lower };

@@ -18,6 +18,7 @@ use crate::{
     export::{Pieces, assemble},
     ladder::{Found, climb},
     segment::{Demands, Units},
+    window::is_given,
 };
 
 /// A C² cubic through points in the plane or in space, with at most two extra knots per segment.
@@ -308,10 +309,10 @@ fn energy_of(demands: &Demands<'_>, nodes: &[crate::element::Node], energy: Ener
 
 /// By how much given end tangents were shortened.
 fn tangent_scale(polygon: &DataPolygon, found: &Found) -> [f64; 2] {
-    if polygon.is_closed() || polygon.tangents().is_none() {
-        return [1.0; 2];
-    }
-    [0, found.nodes.len() - 1].map(|j| found.nodes[j].q.length() / found.plain[j].q.length())
+    [0, polygon.segments()].map(|j| {
+        let scale = || found.nodes[j].q.length() / found.plain[j].q.length();
+        if is_given(polygon, j) { scale() } else { 1.0 }
+    })
 }
 
 /// The criteria that hold the curve back, each with its segments.

@@ -1,5 +1,7 @@
 //! Windows: the stretches of a curve that are solved by themselves, the rest held.
 
+use shapespline_geometry::DataPolygon;
+
 use crate::{
     chain::{Chain, Freedom},
     element::Node,
@@ -56,6 +58,12 @@ pub(crate) fn windows(failing: &[usize], nodes: usize, closed: bool, beside: usi
     all
 }
 
+/// Whether a node is an end with a given tangent.
+pub(crate) fn is_given(polygon: &DataPolygon, node: usize) -> bool {
+    let [start, end] = polygon.tangents().map(|tangent| tangent.is_some());
+    (node == 0 && start) || (node == polygon.segments() && end)
+}
+
 /// Keeps indices before the first node positive.
 const BIAS: isize = 1 << 20;
 
@@ -80,8 +88,7 @@ impl Window {
         };
         let held = |i: usize| {
             let inside = (i + total - self.start) % total < self.count;
-            let end = !polygon.is_closed() && (i == 0 || i + 1 == total);
-            match (inside, end && polygon.tangents().is_some()) {
+            match (inside, is_given(polygon, i)) {
                 (false, _) => Freedom::Held,
                 (true, true) => Freedom::TangentHeld,
                 (true, false) => {

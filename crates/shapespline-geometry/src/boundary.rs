@@ -17,13 +17,22 @@ pub enum Boundary {
     Periodic,
     /// End tangents of the circles through the first three and the last three points.
     Circular,
-    /// Given end tangents: derivatives with respect to the parameter, any non-zero vectors.
+    /// Given end tangents: derivatives with respect to the parameter, any non-zero vectors. An end without
+    /// one has zero curvature.
     Tangents {
         /// `D_0`, the tangent at the first point.
-        start: DVec3,
+        start: Option<DVec3>,
         /// `D_N`, the tangent at the last point.
-        end: DVec3,
+        end: Option<DVec3>,
     },
+}
+
+impl Boundary {
+    /// Given tangents at both ends or at one.
+    #[must_use]
+    pub fn tangents(start: impl Into<Option<DVec3>>, end: impl Into<Option<DVec3>>) -> Self {
+        Self::Tangents { start: start.into(), end: end.into() }
+    }
 }
 
 /// The tangent at `p` of the circle through `p, q, r` (passed in this order), with the speed at

@@ -62,7 +62,7 @@ pub struct DataPolygon {
     directions: OnceBox<Vec<DVec3>>,
     boundary: Boundary,
     /// `D_0` and `D_N`, where the boundary has them.
-    tangents: Option<[DVec3; 2]>,
+    tangents: [Option<DVec3>; 2],
     dimension: Dimension,
 }
 
@@ -140,10 +140,17 @@ impl DataPolygon {
         self.boundary
     }
 
-    /// The end tangents `D_0, D_N` of a boundary that has them (given or circular).
+    /// The end tangents `D_0, D_N`, each where the boundary has it (given or circular).
     #[must_use]
-    pub fn tangents(&self) -> Option<[DVec3; 2]> {
+    pub fn tangents(&self) -> [Option<DVec3>; 2] {
         self.tangents
+    }
+
+    /// Whether a node is an end without a tangent, as of zero curvature.
+    #[must_use]
+    pub fn is_natural_end(&self, node: usize) -> bool {
+        let [start, end] = self.tangents.map(|tangent| tangent.is_none());
+        !self.is_closed() && ((node == 0 && start) || (node == self.segments() && end))
     }
 
     /// Whether the data are planar or spatial by type.
@@ -224,10 +231,11 @@ impl DataPolygon {
             } else {
                 (0..n + 2).into_par_iter().with_min_len(BLOCK).map(direction).collect()
             };
-            (all[0], all[n + 1]) = match (self.is_closed(), self.tangents) {
-                (true, _) => (all[n], all[1]),
-                (_, Some([start, end])) => (normalize(start), normalize(end)),
-                (_, None) => (all[1], all[n]),
+            (all[0], all[n + 1]) = if self.is_closed() {
+                (all[n], all[1])
+            } else {
+                let [start, end] = self.tangents;
+                (start.map_or(all[1], normalize), end.map_or(all[n], normalize))
             };
             Box::new(all)
         })
@@ -434,21 +442,22 @@ fn end_tangents(
     parameters: &[f64],
     boundary: Boundary,
     dimension: Dimension,
-) -> Result<Option<[DVec3; 2]>, InputError> {
+) -> Result<[Option<DVec3>; 2], InputError> {
     match boundary {
-        Boundary::ZeroCurvature | Boundary::Periodic => Ok(None),
+        Boundary::ZeroCurvature | Boundary::Periodic => Ok([None; 2]),
         Boundary::Tangents { start, end } => {
-            check_tangent("start", start, dimension)?;
-            check_tangent("end", end, dimension)?;
-            Ok(Some([start, end]))
+            for (end, tangent) in [("start", start), ("end", end)] {
+                tangent.map_or(Ok(()), |tangent| check_tangent(end, tangent, dimension))?;
+            }
+            Ok([start, end])
         }
         Boundary::Circular => {
             let n = points.len() - 1;
             let (first, last) = (parameters[1] - parameters[0], parameters[n] - parameters[n - 1]);
-            Ok(Some([
-                circle_tangent(points[0], points[1], points[2], first),
-                -circle_tangent(points[n], points[n - 1], points[n - 2], last),
-            ]))
+            Ok([
+                Some(circle_tangent(points[0], points[1], points[2], first)),
+                Some(-circle_tangent(points[n], points[n - 1], points[n - 2], last)),
+            ])
         }
     }
 }

@@ -159,15 +159,12 @@ impl Stretch {
                 self.directions.set(j, normalize(self.chords.get(j)));
             }
         }
-        if let Some(tangents) = polygon.tangents() {
-            let inner = self.segments(polygon);
-            for (place, tangent) in
-                [inner.start.checked_sub(1), Some(inner.end)].iter().zip(tangents)
-            {
-                // Past the last place: not an end of the polygon.
-                if let Some(j) = place.filter(|&j| j < self.places()) {
-                    self.directions.set(j, normalize(tangent));
-                }
+        let inner = self.segments(polygon);
+        let places = [inner.start.checked_sub(1), Some(inner.end)];
+        for (place, tangent) in places.into_iter().zip(polygon.tangents()) {
+            // Past the last place: not an end of the polygon.
+            if let (Some(j), Some(tangent)) = (place.filter(|&j| j < self.places()), tangent) {
+                self.directions.set(j, normalize(tangent));
             }
         }
     }
@@ -320,7 +317,7 @@ mod tests {
                 let open: Vec<DVec3> = (0..=n).map(at).collect();
                 let mut closed = open.clone();
                 closed[n] = closed[0];
-                let tangents = Boundary::Tangents { start: DVec3::X, end: DVec3::Y * 1e-200 };
+                let tangents = Boundary::tangents(DVec3::X, DVec3::Y * 1e-200);
                 let boundaries = [Boundary::ZeroCurvature, Boundary::Circular, tangents];
                 let polygons = boundaries.map(|boundary| (&open, boundary));
                 for (points, boundary) in

@@ -71,11 +71,11 @@ impl Rows for NuSystem<'_> {
         } else if self.is_cyclic() {
             self.interior(segments - 1, 0, tension)
         } else if i == 0 {
-            let tangent = self.polygon.tangents().map(|d| d[0]);
+            let tangent = self.polygon.tangents()[0];
             let (diagonal, upper, right) = self.end(tangent, 0, tension);
             Row { lower: 0.0, diagonal, upper, right }
         } else {
-            let tangent = self.polygon.tangents().map(|d| d[1]);
+            let tangent = self.polygon.tangents()[1];
             let (diagonal, lower, right) = self.end(tangent, segments - 1, tension);
             Row { lower, diagonal, upper: 0.0, right }
         }
@@ -137,7 +137,7 @@ mod tests {
 
     #[test]
     fn a_row_is_renewed_as_it_would_be_made() {
-        let ends = Boundary::Tangents { start: DVec3::new(1.0, 2.0, -1.0), end: DVec3::Y };
+        let ends = Boundary::tangents(DVec3::new(1.0, 2.0, -1.0), DVec3::Y);
         for boundary in [Boundary::ZeroCurvature, Boundary::Periodic, ends] {
             let at = |k: usize| {
                 DVec3::new((0.3 * (k * k) as f64).sin(), (1.7 * k as f64).cos(), k as f64)

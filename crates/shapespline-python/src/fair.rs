@@ -33,7 +33,8 @@ use crate::{
 ///     points[i]‖**e``, or strictly increasing numbers.
 /// boundary : {"natural", "zero-curvature", "periodic", "circular"} or Tangents
 ///     No second derivative at both ends (two names); closed data, whose last point is the first; end
-///     tangents of the circles through the first and the last three points; or given end tangents.
+///     tangents of the circles through the first and the last three points; or given tangents at both
+///     ends or at one.
 /// closed : bool
 ///     Whether the first point is also the last, repeated or not: periodic ends, and no other. Arrays of
 ///     parameters then have one entry more, for the return to the first point, unless the points repeat

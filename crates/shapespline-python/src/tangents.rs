@@ -6,25 +6,26 @@ use pyo3::prelude::*;
 use shapespline::geometry::{Boundary, Coordinates, DVec3, Dimension};
 
 use crate::{
-    error::{invalid, must},
+    error::{Value, invalid, must},
     input::{Numbers, numbers},
     output::{FloatArray, vector},
     pickle::{self, Kind, Reduced},
 };
 
-/// Given tangents at the two ends of a curve, for the argument ``boundary``.
+/// Given tangents at the ends of a curve, or at one of them, for the argument ``boundary``.
 ///
 /// Parameters
 /// ----------
-/// start, end : array_like, shape (3,) or (2,)
+/// start, end : array_like, shape (3,) or (2,), optional
 ///     Derivatives of the curve with respect to its parameter at the first and the last point, in
 ///     units of the points over units of the parameter: any finite, non-zero vectors, with as many
-///     components as the points.
+///     components as the points. An end whose tangent is ``None`` is natural: it has no curvature.
 ///
 /// Raises
 /// ------
 /// ValueError
-///     If a vector is zero, not finite, of a wrong shape, or the two have different lengths.
+///     If a vector is zero, not finite, of a wrong shape, the two have different lengths, or both are
+///     ``None``.
 /// TypeError
 ///     If a vector is not made of real numbers.
 ///
@@ -46,8 +47,8 @@ use crate::{
 #[pyclass(module = "shapespline", frozen, eq, hash, weakref)]
 #[derive(Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub(crate) struct Tangents {
-    start: DVec3,
-    end: DVec3,
+    start: Option<DVec3>,
+    end: Option<DVec3>,
     pub(crate) dimension: Dimension,
 }
 
@@ -55,13 +56,13 @@ impl Hash for Tangents {
     fn hash<H: Hasher>(&self, state: &mut H) {
         for v in [self.start, self.end] {
             // −0 equals 0, and adding 0 makes it so in bits too.
-            v.to_array().map(|x| (x + 0.0).to_bits()).hash(state);
+            v.map(|v| v.to_array().map(|x| (x + 0.0).to_bits())).hash(state);
         }
     }
 }
 
 impl Tangents {
-    pub(crate) fn new(start: DVec3, end: DVec3, dimension: Dimension) -> Self {
+    pub(crate) fn new(start: Option<DVec3>, end: Option<DVec3>, dimension: Dimension) -> Self {
         Self { start, end, dimension }
     }
 
@@ -95,35 +96,50 @@ fn tangent(argument: &str, object: &Bound<'_, PyAny>) -> PyResult<(DVec3, Dimens
 #[pymethods]
 impl Tangents {
     #[new]
-    fn from_python(start: &Bound<'_, PyAny>, end: &Bound<'_, PyAny>) -> PyResult<Self> {
-        let (start, dimension) = tangent("start", start)?;
-        let (end, other) = tangent("end", end)?;
-        if dimension != other {
-            let [start, end] = [dimension, other].map(Dimension::len);
-            let text = format!(
-                "start and end must have the same number of components, got {start} and {end}"
-            );
-            return Err(invalid("end", &[], end, text));
-        }
+    #[pyo3(signature = (start=None, end=None))]
+    fn from_python(
+        start: Option<&Bound<'_, PyAny>>,
+        end: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Self> {
+        let start = start.map(|object| tangent("start", object)).transpose()?;
+        let end = end.map(|object| tangent("end", object)).transpose()?;
+        let dimension = match (start, end) {
+            (Some((_, own)), Some((_, other))) if own != other => {
+                let [start, end] = [own, other].map(Dimension::len);
+                let text = format!(
+                    "start and end must have the same number of components, got {start} and {end}"
+                );
+                return Err(invalid("end", &[], end, text));
+            }
+            (Some((_, dimension)), _) | (None, Some((_, dimension))) => dimension,
+            (None, None) => {
+                let text =
+                    "start and end must not both be None: boundary='natural' has no end tangents";
+                return Err(invalid("start", &[], Value::Nothing, text.to_owned()));
+            }
+        };
+        let [start, end] = [start, end].map(|tangent| tangent.map(|(vector, _)| vector));
         Ok(Self { start, end, dimension })
     }
 
-    /// The tangent at the first point, shape (dim,); a fresh array.
+    /// The tangent at the first point, shape (dim,), or ``None``; a fresh array.
     #[getter]
-    fn start<'py>(&self, py: Python<'py>) -> FloatArray<'py> {
-        vector(py, self.start, self.dimension.len())
+    fn start<'py>(&self, py: Python<'py>) -> Option<FloatArray<'py>> {
+        self.start.map(|tangent| vector(py, tangent, self.dimension.len()))
     }
 
-    /// The tangent at the last point, shape (dim,); a fresh array.
+    /// The tangent at the last point, shape (dim,), or ``None``; a fresh array.
     #[getter]
-    fn end<'py>(&self, py: Python<'py>) -> FloatArray<'py> {
-        vector(py, self.end, self.dimension.len())
+    fn end<'py>(&self, py: Python<'py>) -> Option<FloatArray<'py>> {
+        self.end.map(|tangent| vector(py, tangent, self.dimension.len()))
     }
 
     fn __repr__(&self) -> String {
-        let columns = self.dimension.len();
-        let [start, end] = [self.start, self.end].map(|v| v.to_array()[..columns].to_vec());
-        format!("Tangents({start:?}, {end:?})")
+        let shown = |tangent: Option<DVec3>| match tangent {
+            Some(v) => format!("{:?}", &v.to_array()[..self.dimension.len()]),
+            None => "None".to_owned(),
+        };
+        format!("Tangents({}, {})", shown(self.start), shown(self.end))
     }
 
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {

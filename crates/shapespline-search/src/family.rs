@@ -169,7 +169,7 @@ pub trait TensionFamily: Sync {
 pub fn velocity_weight(polygon: &DataPolygon, node: usize) -> f64 {
     let n = polygon.segments();
     if (node == 0 || node == n) && !polygon.is_closed() {
-        return if polygon.tangents().is_some() { 12.0 } else { 2.0 };
+        return if polygon.tangents()[usize::from(node > 0)].is_some() { 12.0 } else { 2.0 };
     }
     let before = if node == 0 { n - 1 } else { node - 1 };
     let root = (polygon.spacing(before) / polygon.spacing(node)).sqrt();

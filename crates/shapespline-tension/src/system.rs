@@ -120,11 +120,11 @@ impl Rows for MannisSystem<'_> {
         } else if self.is_cyclic() {
             self.interior(last, 0)
         } else if i == 0 {
-            let tangent = self.polygon.tangents().map(|d| d[0]);
+            let tangent = self.polygon.tangents()[0];
             let (diagonal, upper, right) = self.end(tangent, 0, self.slopes[0][1]);
             Row { lower: 0.0, diagonal, upper, right }
         } else {
-            let tangent = self.polygon.tangents().map(|d| d[1]);
+            let tangent = self.polygon.tangents()[1];
             let (diagonal, lower, right) = self.end(tangent, last, self.slopes[last][0]);
             Row { lower, diagonal, upper: 0.0, right }
         }
@@ -191,7 +191,7 @@ mod tests {
 
     #[test]
     fn a_row_is_renewed_as_it_would_be_made() {
-        let ends = Boundary::Tangents { start: DVec3::new(1.0, 2.0, -1.0), end: DVec3::Y };
+        let ends = Boundary::tangents(DVec3::new(1.0, 2.0, -1.0), DVec3::Y);
         for boundary in [Boundary::ZeroCurvature, Boundary::Periodic, ends] {
             let at = |k: usize| {
                 DVec3::new((0.3 * (k * k) as f64).sin(), (1.7 * k as f64).cos(), k as f64)

@@ -122,7 +122,7 @@ pub fn polygon(kind: Kind, case: usize, random: &mut Random) -> Option<DataPolyg
             }
             Boundary::Periodic
         }
-        2 => Boundary::Tangents { start: random.vector(), end: random.vector() },
+        2 => Boundary::tangents(random.vector(), random.vector()),
         _ => Boundary::ZeroCurvature,
     };
     let parametrization = match case % 3 {

@@ -41,10 +41,10 @@ pub fn feature_line() -> DataPolygon {
     let rows = rows("gm_feature_line.csv");
     let parameters = rows.iter().map(|r| r[0]).collect();
     let points = rows.iter().map(|r| DVec3::from_slice(&r[1..])).collect();
-    let boundary = Boundary::Tangents {
-        start: DVec3::new(-11.038033, 801.759583, -57.116488),
-        end: DVec3::new(-758.641754, 249.218852, -132.963858),
-    };
+    let boundary = Boundary::tangents(
+        DVec3::new(-11.038033, 801.759583, -57.116488),
+        DVec3::new(-758.641754, 249.218852, -132.963858),
+    );
     DataPolygon::new(points, &Parametrization::Given(parameters), boundary).unwrap()
 }
 
@@ -58,8 +58,8 @@ pub fn helix(tangent_length: f64) -> DataPolygon {
     };
     let points: Vec<DVec3> = (0..25).map(at).collect();
     let circle = DataPolygon::new(points.clone(), &Parametrization::Chordal, Boundary::Circular);
-    let [start, end] = circle.unwrap().tangents().unwrap().map(|d| d.normalize() * tangent_length);
-    let boundary = Boundary::Tangents { start, end };
+    let [start, end] = circle.unwrap().tangents().map(|d| d.unwrap().normalize() * tangent_length);
+    let boundary = Boundary::tangents(start, end);
     DataPolygon::new(points, &Parametrization::Chordal, boundary).unwrap()
 }
 

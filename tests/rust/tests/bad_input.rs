@@ -20,7 +20,7 @@ fn data() {
     };
     let (chordal, natural) = (&Parametrization::Chordal, Boundary::ZeroCurvature);
     let given = |u: &[f64]| Parametrization::Given(u.to_vec());
-    let tangents = |start, end| Boundary::Tangents { start, end };
+    let tangents = |start, end| Boundary::tangents(start, end);
     let cases = [
         (refused(with(2, DVec3::new(0.0, f64::NAN, 0.0)), chordal, natural), "points[2]", "NaN"),
         (refused(with(1, DVec3::INFINITY), chordal, natural), "points[1]", "inf"),

@@ -235,7 +235,7 @@ fn contradictions_are_refused_by_name() {
         let found = text(constraints);
         assert!(found.contains(expected), "{found}\n{expected}");
     }
-    let ends = Boundary::Tangents { start: DVec3::Z * 3.0, end: DVec3::X };
+    let ends = Boundary::tangents(DVec3::Z * 3.0, DVec3::X);
     let held = polygon(walk(1, Dimension::Three), Dimension::Three, ends);
     let error = fit(&held, near(0.01)).unwrap_err().to_string();
     assert!(error.contains("max_deviation must be more than the given end tangents"), "{error}");

@@ -179,7 +179,7 @@ fn lambda_one_is_the_c2_cubic_and_one_lambda_a_node_a_nu_spline() {
             };
             // Given tangents: (1+ν) q = D and q = λD. Zero curvature: (2 + ½ν) q + q' = 3L/h and
             // (3−λ')/λ q + q' = 3L/h.
-            let end = |i: usize, beside: usize| match polygon.tangents() {
+            let end = |i: usize, beside: usize| match polygon.tangents()[usize::from(i > 0)] {
                 Some(_) => 1.0 / lambda[i] - 1.0,
                 None => 2.0 * ((3.0 - lambda[beside]) / lambda[i] - 2.0),
             };
@@ -413,7 +413,7 @@ fn split_coplanarity_with_uneven_spacing() {
         let boundary = if case % 2 == 0 {
             Boundary::ZeroCurvature
         } else {
-            Boundary::Tangents { start: DVec3::X + DVec3::Y, end: DVec3::X - DVec3::Y }
+            Boundary::tangents(DVec3::X + DVec3::Y, DVec3::X - DVec3::Y)
         };
         let polygon = DataPolygon::new(points, &parametrization, boundary).unwrap();
         for family in Family::DEFAULTS {

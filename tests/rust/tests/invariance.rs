@@ -37,7 +37,7 @@ fn moved(
     let mut parameters: Vec<f64> = polygon.parameters().iter().map(|&u| parameter(u)).collect();
     let mut boundary = match polygon.boundary() {
         Boundary::Tangents { start, end } => {
-            Boundary::Tangents { start: tangent(start), end: tangent(end) }
+            Boundary::Tangents { start: start.map(&tangent), end: end.map(&tangent) }
         }
         other => other,
     };

@@ -55,7 +55,7 @@ fn regular_data_of_every_boundary_and_parametrisation() {
         for n in [20, 60, 200, scaled(4000)] {
             let circular = Boundary::Circular;
             let [start, end] = [DVec3::new(0.3, -1.0, 0.0), DVec3::new(2.0, 0.5, 0.0)];
-            for boundary in [circular, Boundary::Periodic, Boundary::Tangents { start, end }] {
+            for boundary in [circular, Boundary::Periodic, Boundary::tangents(start, end)] {
                 case += 1;
                 let family = Family::DEFAULTS[case % 4];
                 let names = &NAMED[case % 3];

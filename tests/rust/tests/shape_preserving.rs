@@ -175,7 +175,7 @@ fn the_report_of_an_unsolved_search_is_that_of_its_curve() {
     let polygon = DataPolygon::new(
         points.map(DVec3::from).to_vec(),
         &Parametrization::Chordal,
-        Boundary::Tangents { start, end },
+        Boundary::tangents(start, end),
     );
     let polygon = polygon.unwrap();
     for limit in 1..60 {

@@ -140,7 +140,7 @@ fn plain_curves_through_points_that_double_back_on_a_line_are_not_regular() {
         let start = if planar { DVec3::ZERO } else { random.vector() };
         let at = |place: &f64| start + direction * *place;
         let mut points: Vec<DVec3> = places[..=n].iter().map(at).collect();
-        let along = Boundary::Tangents { start: direction, end: direction * 0.5 };
+        let along = Boundary::tangents(direction, direction * 0.5);
         let boundary = [Boundary::ZeroCurvature, along, Boundary::Periodic][case % 3];
         if boundary == Boundary::Periodic && points[n] != points[0] {
             points.push(points[0]);

@@ -71,7 +71,7 @@ fn polygon(case: usize, random: &mut Random) -> Option<DataPolygon> {
     };
     let boundary = match case / 6 % 4 {
         0 => Boundary::ZeroCurvature,
-        1 => Boundary::Tangents { start: tangent(), end: tangent() },
+        1 => Boundary::tangents(tangent(), tangent()),
         2 => Boundary::Circular,
         _ => {
             points.extend((points[points.len() - 1] != points[0]).then_some(points[0]));
@@ -99,8 +99,8 @@ fn wrong_turns(
         match (i, closed) {
             _ if (0..=last).contains(&i) => Some(at(i).normalize()),
             (_, true) => Some(at(i.rem_euclid(n as isize)).normalize()),
-            (-1, _) => polygon.tangents().map(|d| d[0].normalize()),
-            (i, _) if i == last + 1 => polygon.tangents().map(|d| d[1].normalize()),
+            (-1, _) => polygon.tangents()[0].map(DVec3::normalize),
+            (i, _) if i == last + 1 => polygon.tangents()[1].map(DVec3::normalize),
             _ => None,
         }
     };

@@ -2,7 +2,7 @@
 //! with the middle point left out.
 
 use glam::DVec3;
-use shapespline_geometry::{Boundary, polynomial::Sign};
+use shapespline_geometry::polynomial::Sign;
 
 use super::{Around, NodeCondition, NodeRecord};
 use crate::{
@@ -34,7 +34,7 @@ impl<'a, 'c, 'p> Pair<'a, 'c, 'p> {
         }
         let (before, after) = ((node + n - 1) % n, (node + 1) % n);
         let end = if after == 0 && !polygon.is_closed() { n } else { after };
-        if polygon.boundary() == Boundary::ZeroCurvature && (before == 0 || end == n) {
+        if polygon.is_natural_end(before) || polygon.is_natural_end(end) {
             return None;
         }
         let binormals @ [p, q] = [before, end].map(|i| polygon.binormal(i));

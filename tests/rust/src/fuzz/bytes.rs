@@ -193,11 +193,13 @@ impl<'a> Bytes<'a> {
 
     /// Some end conditions.
     pub fn boundary(&mut self, planar: bool) -> Boundary {
-        match self.below(4) {
+        match self.below(6) {
             0 => Boundary::ZeroCurvature,
             1 => Boundary::Periodic,
             2 => Boundary::Circular,
-            _ => Boundary::Tangents { start: self.vector(planar), end: self.vector(planar) },
+            3 => Boundary::tangents(self.vector(planar), None),
+            4 => Boundary::tangents(None, self.vector(planar)),
+            _ => Boundary::tangents(self.vector(planar), self.vector(planar)),
         }
     }
 

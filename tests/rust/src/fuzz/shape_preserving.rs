@@ -59,9 +59,9 @@ fn fits(polygon: &DataPolygon) -> bool {
     if !(0..polygon.segments()).all(|i| (1e-120..1e120).contains(&velocity(i))) {
         return false;
     }
-    let Some(tangents) = polygon.tangents() else { return true };
     let last = polygon.segments() - 1;
-    [0, last].iter().zip(tangents).all(|(&i, tangent)| {
+    [0, last].iter().zip(polygon.tangents()).all(|(&i, tangent)| {
+        let Some(tangent) = tangent else { return true };
         let longer = length(tangent) * polygon.spacing(i) / length(polygon.chord(i));
         (1e-20..1e20).contains(&longer)
     })
