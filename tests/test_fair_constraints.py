@@ -55,6 +55,45 @@ def test_exports_have_the_corners(dim, rng):
         np.testing.assert_allclose(form(u), curve(u), atol=1e-12 * np.abs(points).max())
 
 
+@every_dimension
+@pytest.mark.parametrize("energy", ["parametric", "bending"])
+@pytest.mark.parametrize("ends", ["circular", "both", "start", "end"])
+@pytest.mark.parametrize("corners", [(1,), (3, 7), (1, 2, 10)])
+def test_corners_beside_end_tangents(dim, energy, ends, corners, rng):
+    """The ends of the whole have their tangents; each part is what it is by itself."""
+    points = polygons.random_walk(rng, 12, dim)
+    chords = np.diff(points, axis=0)
+    out = [1.2 * chords[0] - 0.3 * chords[1], 1.2 * chords[-1] - 0.3 * chords[-2]]
+    out = [v / np.linalg.norm(v) for v in out]
+    if ends == "circular":
+        boundary = ends
+        out = [ss.NuSpline(points, boundary=ends).tangents[k] for k in (0, -1)]
+    else:
+        out = [
+            v if ends in ("both", name) else None
+            for v, name in zip(out, ("start", "end"), strict=True)
+        ]
+        boundary = ss.Tangents(*out)
+    curve = ss.FairSpline(points, boundary=boundary, energy=energy, corners=corners)
+    assert curve.check().ok
+    assert curve.boundary == boundary
+    scales = curve.diagnostics.tangent_scale
+    for k, tangent, scale in zip((0, -1), out, scales, strict=True):
+        if tangent is not None:
+            np.testing.assert_allclose(curve.tangents[k], scale * tangent, atol=1e-12)
+    nodes = [0, *corners, 11]
+    for first, last in pairwise(nodes):
+        own = (out[0] if first == 0 else None, out[1] if last == 11 else None)
+        part = ss.FairSpline(
+            points[first : last + 1],
+            curve.parameters[first : last + 1],
+            boundary="natural" if all(v is None for v in own) else ss.Tangents(*own),
+            energy=energy,
+        )
+        u = np.linspace(*part.parameters[[0, -1]], 60)[:-1]
+        np.testing.assert_allclose(curve(u), part(u), atol=1e-12 * np.abs(points).max())
+
+
 def test_closed_data_and_repeated_points():
     corners = [1, 3]
     curve = ss.FairSpline(SQUARE, closed=True, corners=corners)
@@ -106,7 +145,6 @@ def test_directions_are_kept(dim, rng):
         ({"corners": [1.5]}, ss.InputError, r"corners\[0\] must be the index of a point"),
         ({"corners": [-1]}, ss.InputError, r"corners\[0\] must be the index of a point"),
         ({"corners": 4.0}, ss.InputError, "corners must be an angle above 0 and at most π"),
-        ({"corners": [2], "boundary": "circular"}, ss.InputError, "corners must be empty where"),
         ({"tangents": [1, 2]}, TypeError, "tangents must be a dict of index: vector, got list"),
         ({"tangents": {9: [1, 0]}}, ss.InputError, r"tangents\[9\] must be the index of a point"),
         ({"tangents": {2: [1, 0, 0]}}, ss.InputError, r"tangents\[2\] must be a vector of 2"),

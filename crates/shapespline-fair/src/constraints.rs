@@ -12,7 +12,7 @@ use crate::{element::TAU, shape::off_chord, window::is_given};
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Constraints {
     /// Points at which the curve has a corner, ascending. The data are split there, and each part is open
-    /// data with natural ends.
+    /// data with natural ends at the corners.
     pub corners: Vec<usize>,
     /// Directions that the curve has at points, each with the index of its point, ascending. What torsion asks
     /// may not go together with them: the fit then ends unsolved.
@@ -32,7 +32,7 @@ impl Constraints {
     ///
     /// # Errors
     /// Corners or tangents at points that are not there, at ends that cannot have them, or out of order;
-    /// corners beside end tangents; vectors without a direction; a distance that is not positive.
+    /// vectors without a direction; a distance that is not positive.
     pub fn validate(&self, polygon: &DataPolygon) -> Result<(), InputError> {
         let nodes = polygon.nodes();
         let inner = |k: usize| if polygon.is_closed() { k < nodes } else { k > 0 && k + 1 < nodes };
@@ -44,12 +44,6 @@ impl Constraints {
                 return Err(InputError::OutOfRange { argument, index, value, allowed });
             }
             before = Some(corner);
-        }
-        if polygon.tangents() != [None; 2] && !self.corners.is_empty() {
-            let allowed =
-                "empty where the ends have tangents: the parts between corners have natural ends";
-            let value = self.corners[0] as f64;
-            return Err(InputError::Scalar { argument: "corners", value, allowed });
         }
         let mut before = None;
         for (index, &(node, vector)) in self.tangents.iter().enumerate() {
@@ -155,11 +149,14 @@ impl Part {
         let nodes = from..=to;
         let points = nodes.clone().map(|k| polygon.points()[if k > n { k - n } else { k }]);
         let parameters = nodes.map(|k| if k > n { u[k - n] + period } else { u[k] });
+        // The tangents of the whole hold at its own ends.
+        let [start, end] = polygon.tangents();
+        let boundary = Boundary::tangents(start.filter(|_| from == 0), end.filter(|_| to == n));
         let polygon = DataPolygon::with_dimension(
             points.collect(),
             polygon.dimension(),
             &Parametrization::Given(parameters.collect()),
-            Boundary::ZeroCurvature,
+            boundary,
         )?;
         Ok(Self { first: from, polygon })
     }

@@ -280,7 +280,10 @@ impl Whole {
             self.pieces[place(i)] = found.pieces(&demands, i);
         }
         self.method = self.method.max(found.method);
-        self.tangent_scale = tangent_scale(&part.polygon, &found);
+        let scales = tangent_scale(&part.polygon, &found);
+        for (whole, own) in self.tangent_scale.iter_mut().zip(scales) {
+            *whole *= own;
+        }
         self.energy += energy_of(&demands, &found.nodes, options.energy);
         self.energy_cubic += energy_of(&demands, &found.plain, options.energy);
         self.active.extend(found.active.iter().map(|&(criterion, i)| (criterion, place(i))));

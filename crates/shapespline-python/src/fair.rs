@@ -57,8 +57,8 @@ use crate::{
 ///     Largest number of Newton steps; by default each phase has a limit of its own.
 /// corners : sequence of int or float, optional
 ///     Points at which the curve has a corner: their indices, or as a float the turning angle in radians
-///     from which on points are corners. The data are split there; each part has natural ends, and the
-///     criteria ask for nothing at a corner. Needs natural or periodic ends.
+///     from which on points are corners. The data are split there; each part has natural ends at its
+///     corners, and the criteria ask for nothing there. Given end tangents hold at the ends of the whole.
 /// tangents : dict of int to array_like, optional
 ///     Directions of the curve at points, by index; lengths do not matter. What torsion asks may not go
 ///     together with them.
