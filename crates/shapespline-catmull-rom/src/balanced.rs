@@ -12,53 +12,46 @@
 //! `Σ_segments log²(φ_i/ψ_i) + 0.01 Σ_nodes (s_i − s⁰_i)²`,
 //!
 //! `s⁰` being the split of the parametrisation's tangents, which makes the answer unique. Newton steps, or
-//! Gauss–Newton ones where those do not lead downhill, with halving, one tridiagonal system each; O(N) per
-//! step. The construction is this project's.
+//! Gauss–Newton ones where those do not lead downhill, with halving, one tridiagonal system each.
+//!
+//! A split is felt by its neighbours at a factor of at most 0.82 or so per node: where `φ_i = ψ_{i−1}`, that is
+//! the root of `x² + (2 + 4·0.01)x + 1`. So long polygons are balanced block by block, each with so many nodes
+//! beside it that what is further away is below rounding. Cost O(N), on all threads for long curves; the
+//! construction is this project's.
+
+use std::ops::Range;
 
 use rayon::prelude::*;
-use shapespline_banded::{SolveError, solve_cyclic, solve_tridiagonal};
-use shapespline_geometry::{DVec3, DataPolygon, length, normalize};
+use shapespline_banded::SolveError;
+use shapespline_geometry::{DVec3, DataPolygon, normalize};
 
-use crate::tangents::tangent;
+mod node;
+mod normal;
 
-/// Weight of the parametrisation's own split. Measured on the shared data sets: 0.1 leaves the largest
-/// curvature of the hiking track half as large again, 0.0001 bends the protein backbone by a tenth more.
-const ANCHOR: f64 = 0.01;
+use node::{At, Node};
+use normal::{ANCHOR, Normal, STRIDE};
 
-/// Turns beyond this angle keep the parametrisation's tangent: 170°, where the plane of the three points
-/// is hardly defined.
-const LARGEST_TURN: f64 = 170.0 / 180.0 * std::f64::consts::PI;
-
-/// No angle between tangent and chord is made smaller than this, in radians: far above rounding and the
-/// default zero tolerance, so that the plane of the three points stays known.
-const SMALLEST_ANGLE: f64 = 1e-7;
-
-/// Limit of steps; 4 to 12 are usual.
+/// Limit of steps; 3 to 8 are usual.
 const STEPS: usize = 50;
-
-/// Newton steps beyond this change of a logarithm are not trusted.
-const LARGEST_STEP: f64 = 4.0;
 
 /// The steps end when no split changes by more than this (in `s`, so relatively).
 const ACCURACY: f64 = 1e-12;
 
-/// Nodes per parallel task.
-const BLOCK: usize = 4096;
+/// Newton's last step: the next would be some square of it.
+const LAST_STEP: f64 = 1e-7;
 
-/// What is known of one node.
-#[derive(Debug, Clone, Copy)]
-struct Node {
-    /// The parametrisation's tangent.
-    tangent: DVec3,
-    /// The angles `ψ_{i−1}, φ_i` of that tangent with the chords before and after; zero where there is
-    /// no such chord.
-    angles: [f64; 2],
-    /// Whether the split is free: the node turns, by less than [`LARGEST_TURN`], and no four points around
-    /// it lie in a plane that the rest of the points leave. Where the binormal flips on an inflecting
-    /// coplanar segment depends on the directions, and coplanarity asks for it where the
-    /// parametrisation's have it.
-    is_free: bool,
-}
+/// Nodes whose splits change by less than this rest, unless one of so many nodes on each side does not.
+const ASLEEP: f64 = 1e-9;
+const AROUND: usize = 8;
+
+/// Nodes per block.
+const BLOCK: usize = 2048;
+
+/// Nodes on each side of a block that are balanced with it: `0.82^192` is below rounding.
+const BESIDE: usize = 192;
+
+/// Nodes from which on blocks are balanced on all threads.
+const MANY: usize = 8192;
 
 /// The tangent at each point: of the length of the parametrisation's, in the balanced direction. Zero at
 /// ends of zero curvature, whose legs follow the other end of their segment. O(N).
@@ -70,139 +63,109 @@ pub(crate) fn tangents(
     zero: f64,
     planar: bool,
 ) -> Result<Vec<DVec3>, SolveError> {
-    let count = polygon.points().len();
-    let nodes: Vec<Node> = if count < 2 * BLOCK {
-        (0..count).map(|i| Node::new(polygon, i, zero, planar)).collect()
+    let count = polygon.nodes();
+    let mut tangents: Vec<DVec3> = bytemuck::zeroed_vec(polygon.points().len());
+    let balance = |splits: &mut Splits, (k, out): (usize, &mut [DVec3])| {
+        splits.load(polygon, k * BLOCK..k * BLOCK + out.len(), zero, planar);
+        splits.minimize()?;
+        splits.write(out);
+        Ok(())
+    };
+    let all = &mut tangents[..count];
+    if count < MANY {
+        let mut splits = Splits::default();
+        all.chunks_mut(BLOCK).enumerate().try_for_each(|block| balance(&mut splits, block))?;
     } else {
-        (0..count)
-            .into_par_iter()
-            .with_min_len(BLOCK)
-            .map(|i| Node::new(polygon, i, zero, planar))
-            .collect()
-    };
-    let splits = Splits::new(polygon, &nodes).minimize()?;
-    let direct = |(i, node): (usize, &Node)| {
-        let s = splits[if i < splits.len() { i } else { 0 }];
-        if node.is_free { node.with_split(polygon, i, s) } else { node.tangent }
-    };
-    Ok(nodes.iter().enumerate().map(direct).collect())
-}
-
-impl Node {
-    fn new(polygon: &DataPolygon, i: usize, zero: f64, planar: bool) -> Self {
-        let n = polygon.segments();
-        let tangent = tangent(polygon, i).unwrap_or_default();
-        let has = [i > 0 || polygon.is_closed(), i < n || polygon.is_closed()];
-        let [before, after] = polygon.directions_at(i);
-        let direction = normalize(tangent);
-        let to = |chord: DVec3, has: bool| if has { angle(chord, direction) } else { 0.0 };
-        let angles = [to(before, has[0]), to(after, has[1])];
-        let turns = has == [true; 2] && before.cross(after).length() > zero;
-        let twist = planar || [i + n - 1, i].iter().all(|&k| twists(polygon, k % n, zero));
-        let is_free = turns
-            && angles.iter().all(|&a| a > 0.0)
-            && angles[0] + angles[1] < LARGEST_TURN
-            && twist;
-        Self { tangent, angles, is_free }
+        let blocks = all.par_chunks_mut(BLOCK).enumerate();
+        blocks.map_init(Splits::default, balance).collect::<Result<(), _>>()?;
     }
-
-    /// The tangent that splits the turning angle with `log(φ/ψ) = s`.
-    fn with_split(&self, polygon: &DataPolygon, i: usize, s: f64) -> DVec3 {
-        let [before, after] = polygon.directions_at(i);
-        let turn = self.angles[0] + self.angles[1];
-        let floor = SMALLEST_ANGLE.min(self.angles[0]).min(self.angles[1]);
-        let psi = (turn * sigmoid(-s)).clamp(floor, turn - floor);
-        let phi = turn - psi;
-        // Unit vectors in a plane: sin θ t = sin φ u + sin ψ u', with ψ from u to t and φ from t to u'.
-        normalize(before * phi.sin() + after * psi.sin()) * length(self.tangent)
+    // Of closed data the last point is the first.
+    if count < tangents.len() {
+        tangents[count] = tangents[0];
     }
+    Ok(tangents)
 }
 
-/// Whether the four points around a segment do not lie in a plane; at an open end there are three.
-fn twists(polygon: &DataPolygon, segment: usize, zero: f64) -> bool {
-    let n = polygon.segments();
-    if !polygon.is_closed() && (segment == 0 || segment + 1 >= n) {
-        return true;
-    }
-    polygon.gamma(segment).abs() > zero
+/// The sum of squares over a block of nodes, and its minimiser.
+#[derive(Debug, Default)]
+struct Splits {
+    nodes: Vec<Node>,
+    /// Whether the last node is followed by the first.
+    cyclic: bool,
+    /// Nodes before those that the block is made for.
+    skipped: usize,
+    /// The splits, what is tried next, and what that makes of the angles.
+    s: Vec<f64>,
+    next: Vec<f64>,
+    at: Vec<At>,
+    /// The nodes whose splits still move: ascending, with others between them.
+    awake: Vec<Range<usize>>,
+    system: Normal,
 }
 
-/// The angle between unit vectors, exact to rounding however small it is.
-fn angle(u: DVec3, v: DVec3) -> f64 {
-    u.cross(v).length().atan2(u.dot(v))
-}
-
-fn sigmoid(s: f64) -> f64 {
-    1.0 / (1.0 + (-s).exp())
-}
-
-/// The sum of squares and its minimiser.
-struct Splits<'a> {
-    nodes: &'a [Node],
-    closed: bool,
-    /// `s⁰` at each distinct node.
-    anchor: Vec<f64>,
-}
-
-impl<'a> Splits<'a> {
-    fn new(polygon: &DataPolygon, nodes: &'a [Node]) -> Self {
-        let split =
-            |node: &Node| if node.is_free { (node.angles[1] / node.angles[0]).ln() } else { 0.0 };
-        let anchor = nodes[..polygon.nodes()].iter().map(split).collect();
-        Self { nodes, closed: polygon.is_closed(), anchor }
-    }
-
-    /// `log φ` and `log ψ` at a node for a split, and their derivatives: those of a node that is not
-    /// free do not change.
-    fn logs(&self, i: usize, s: f64) -> ([f64; 2], [f64; 2]) {
-        let Node { angles: [psi, phi], is_free, .. } = self.nodes[i];
-        if !is_free {
-            return ([psi.ln(), phi.ln()], [0.0; 2]);
-        }
-        let turn = (psi + phi).ln();
-        let [small, large] = [sigmoid(-s), sigmoid(s)];
-        ([turn + small.ln(), turn + large.ln()], [-large, small])
-    }
-
-    /// Segments between two turning nodes: the node at the start, the one at the end.
-    fn segments(&self) -> impl Iterator<Item = [usize; 2]> + '_ {
-        let count = self.anchor.len();
-        let pairs = if self.closed { count } else { count - 1 };
-        let turns = |i: usize, side: usize| {
-            let node = &self.nodes[i];
-            node.is_free
-                || (node.angles[side] > 0.0 && node.angles[side] < LARGEST_TURN && self.is_end(i))
+impl Splits {
+    /// Reads some nodes of a polygon and those beside them.
+    fn load(&mut self, polygon: &DataPolygon, own: Range<usize>, zero: f64, planar: bool) {
+        let (n, count) = (polygon.segments(), polygon.nodes());
+        self.cyclic = polygon.is_closed() && own.len() == count;
+        let beside = if own.len() == count { 0 } else { BESIDE };
+        // Of closed data the second round, so that there is room before the first node.
+        let (round, end) = if polygon.is_closed() { (count, 3 * count) } else { (0, count) };
+        let start = (round + own.start).saturating_sub(beside);
+        let nodes = start..(round + own.end + beside).min(end);
+        self.skipped = round + own.start - nodes.start;
+        // The direction of the chord that is so many after the one before a node, and whether the four
+        // points around that lie in no plane.
+        let segment = |node: usize, by: usize| match polygon.is_closed() {
+            true => Some((node + n + by - 1) % n),
+            false => (node + by).checked_sub(1).filter(|&i| i < n),
         };
-        (0..pairs)
-            .map(move |i| [i, (i + 1) % count])
-            .filter(move |&[i, j]| turns(i, 1) && turns(j, 0))
+        let direction = |node: usize, by: usize| {
+            segment(node, by).map_or(DVec3::ZERO, |i| normalize(polygon.chord(i)))
+        };
+        let twists = |[a, b, c]: [DVec3; 3]| {
+            let inside = a != DVec3::ZERO && c != DVec3::ZERO;
+            planar || !inside || a.cross(b).dot(c).abs() > zero
+        };
+        let first = nodes.start;
+        let mut chords: [DVec3; 4] = [
+            if first > 0 { direction(first - 1, 0) } else { DVec3::ZERO },
+            direction(first, 0),
+            direction(first, 1),
+            direction(first, 2),
+        ];
+        let mut twist_before = twists([chords[0], chords[1], chords[2]]);
+        self.nodes.clear();
+        for node in nodes {
+            let twist = twists([chords[1], chords[2], chords[3]]);
+            let (i, around) = (node % count, [chords[1], chords[2]]);
+            self.nodes.push(Node::new(polygon, i, around, zero, twist_before && twist));
+            chords = [chords[1], chords[2], chords[3], direction(node, 3)];
+            twist_before = twist;
+        }
     }
 
-    /// Whether a node is an end with a given tangent: its angle is fixed, and counts.
-    fn is_end(&self, i: usize) -> bool {
-        !self.closed && (i == 0 || i + 1 == self.anchor.len())
+    /// Writes the tangents of the nodes that the block is made for.
+    fn write(&self, tangents: &mut [DVec3]) {
+        let nodes = self.nodes.iter().zip(&self.s).skip(self.skipped);
+        for (out, (node, s)) in tangents.iter_mut().zip(nodes) {
+            *out = node.with_split(*s);
+        }
     }
 
-    fn value(&self, s: &[f64]) -> f64 {
-        let anchors =
-            s.iter().zip(&self.anchor).map(|(s, a)| ANCHOR * (s - a).powi(2)).sum::<f64>();
-        let residual = |[i, j]: [usize; 2]| self.logs(i, s[i]).0[1] - self.logs(j, s[j]).0[0];
-        anchors + self.segments().map(|pair| residual(pair).powi(2)).sum::<f64>()
-    }
-
-    fn minimize(&self) -> Result<Vec<f64>, SolveError> {
-        let mut s = self.anchor.clone();
-        let mut value = self.value(&s);
+    fn minimize(&mut self) -> Result<(), SolveError> {
+        self.start();
         for _ in 0..STEPS {
-            let step = self.step(&s)?;
-            let largest = step.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+            let is_newton = self.step()?;
+            let awake = || self.awake.iter().flat_map(Range::clone);
+            let largest = awake().fold(0.0, |most: f64, i| most.max(self.system.step[i].abs()));
+            let is_last = is_newton && largest <= LAST_STEP;
+            let value = self.sum();
             let mut scale = 1.0;
             while scale * largest > ACCURACY {
-                let next: Vec<f64> = s.iter().zip(&step).map(|(s, d)| s + scale * d).collect();
-                let lower = self.value(&next);
+                self.go(scale);
                 // Near the end the sum is flat to rounding, and the step is better than it can tell.
-                if lower <= value * (1.0 + 1e-14) {
-                    (s, value) = (next, lower);
+                if is_last || self.sum() <= value * (1.0 + 1e-13) {
                     break;
                 }
                 scale *= 0.5;
@@ -210,87 +173,114 @@ impl<'a> Splits<'a> {
             if scale * largest <= ACCURACY {
                 break;
             }
+            let Self { s, next, awake, .. } = &mut *self;
+            awake.iter().for_each(|r| s[r.clone()].copy_from_slice(&next[r.clone()]));
+            if is_last {
+                break;
+            }
+            self.let_sleep();
         }
-        Ok(s)
+        Ok(())
     }
 
-    /// A step of Newton's method where that leads downhill, else of Gauss and Newton's, which always
-    /// does.
-    fn step(&self, s: &[f64]) -> Result<Vec<f64>, SolveError> {
-        let mut system = Normal::new(s, &self.anchor);
-        for [i, j] in self.segments() {
-            system.add([i, j], self.logs(i, s[i]), self.logs(j, s[j]));
+    /// A start that needs fewer steps than `s⁰`: that for which each angle is the geometric mean of the two at
+    /// its segment, but for what they do to the turning angles.
+    fn start(&mut self) {
+        let n = self.nodes.len();
+        self.awake.clear();
+        self.awake.push(0..n);
+        self.system.begin(n);
+        self.s.clear();
+        self.s.extend(self.nodes.iter().map(|node| node.anchor));
+        self.go(0.0);
+        let Self { nodes, cyclic, s, at, .. } = &mut *self;
+        for [i, j] in pairs(nodes, 0..n, *cyclic) {
+            let half = 0.5 * (at[i].phi - at[j].psi);
+            s[i] -= if nodes[i].is_free { half } else { 0.0 };
+            s[j] -= if nodes[j].is_free { half } else { 0.0 };
         }
-        let downhill = system.right.clone();
-        if let Ok(step) = system.solve(self.closed, true) {
-            let slope: f64 = step.iter().zip(&downhill).map(|(d, r)| d * r).sum();
-            if slope > 0.0 && step.iter().all(|d| d.abs() <= LARGEST_STEP) {
-                return Ok(step);
+        self.go(0.0);
+    }
+
+    /// Tries the splits that are so much of a step away.
+    fn go(&mut self, scale: f64) {
+        let Self { nodes, s, next, at, awake, system, .. } = self;
+        next.resize(nodes.len(), 0.0);
+        at.resize(nodes.len(), At::default());
+        for i in awake.iter().flat_map(Range::clone) {
+            next[i] = s[i] + scale * system.step[i].clamp(-STRIDE, STRIDE);
+            at[i] = nodes[i].at(next[i]);
+        }
+    }
+
+    /// The sum for the splits tried last, as far as awake nodes have a share in it.
+    fn sum(&self) -> f64 {
+        let Self { nodes, cyclic, next, at, awake, .. } = self;
+        let of = |range: &Range<usize>| {
+            let anchors = range.clone().map(|i| (next[i] - nodes[i].anchor).powi(2));
+            let residuals = pairs(nodes, range.clone(), *cyclic);
+            let residuals = residuals.map(|[i, j]| (at[i].phi - at[j].psi).powi(2));
+            ANCHOR * anchors.sum::<f64>() + residuals.sum::<f64>()
+        };
+        awake.iter().map(of).sum()
+    }
+
+    /// A step of the nodes awake, others held: Newton's, but that where nodes still move much residuals with
+    /// negative curvature lend it none, and where that does not lead downhill none do. Whether it is Newton's
+    /// throughout.
+    fn step(&mut self) -> Result<bool, SolveError> {
+        let Self { nodes, cyclic, s, at, awake, system, .. } = self;
+        let mut is_newton = true;
+        for range in awake {
+            for i in range.clone() {
+                system.clear(i, ANCHOR * (nodes[i].anchor - s[i]));
+            }
+            for [i, j] in pairs(nodes, range.clone(), *cyclic) {
+                system.add([i, j], [at[i], at[j]]);
+            }
+            is_newton &= system.solve(range.clone(), *cyclic)?;
+        }
+        Ok(is_newton)
+    }
+
+    /// Leaves those awake that moved, and the nodes beside them. Of a cyclic block all stay awake.
+    fn let_sleep(&mut self) {
+        let Self { cyclic, awake, system, nodes, .. } = self;
+        if *cyclic {
+            return;
+        }
+        let mut still: Vec<Range<usize>> = Vec::new();
+        for i in awake.iter().flat_map(Range::clone).filter(|&i| system.step[i].abs() > ASLEEP) {
+            let (start, end) = (i.saturating_sub(AROUND), (i + AROUND + 1).min(nodes.len()));
+            match still.last_mut() {
+                Some(last) if start <= last.end => last.end = end,
+                _ => still.push(start..end),
             }
         }
-        system.solve(self.closed, false)
+        *awake = still;
     }
 }
 
-/// The normal equations of one step, tridiagonal.
-struct Normal {
-    lower: Vec<f64>,
-    diagonal: Vec<f64>,
-    upper: Vec<f64>,
-    /// What the residuals' own second derivatives add to the diagonal.
-    curvature: Vec<f64>,
-    right: Vec<f64>,
-}
-
-impl Normal {
-    fn new(s: &[f64], anchor: &[f64]) -> Self {
-        let n = s.len();
-        let right = s.iter().zip(anchor).map(|(s, a)| ANCHOR * (a - s)).collect();
-        let zero = vec![0.0; n];
-        let (lower, upper, curvature) = (zero.clone(), zero.clone(), zero);
-        Self { lower, diagonal: vec![ANCHOR; n], upper, curvature, right }
-    }
-
-    /// Adds the residual `log φ_i − log ψ_i` of a segment from node `i` to node `j`.
-    fn add(
-        &mut self,
-        [i, j]: [usize; 2],
-        at_start: ([f64; 2], [f64; 2]),
-        at_end: ([f64; 2], [f64; 2]),
-    ) {
-        let residual = at_start.0[1] - at_end.0[0];
-        let [di, dj] = [at_start.1[1], -at_end.1[0]];
-        self.diagonal[i] += di * di;
-        self.diagonal[j] += dj * dj;
-        self.upper[i] += di * dj;
-        self.lower[j] += di * dj;
-        self.right[i] -= di * residual;
-        self.right[j] -= dj * residual;
-        // (log σ)'' = −σ(s)σ(−s), and the two first derivatives of a node are σ(−s) and −σ(s).
-        self.curvature[i] += residual * at_start.1[0] * at_start.1[1];
-        self.curvature[j] -= residual * at_end.1[0] * at_end.1[1];
-    }
-
-    fn solve(&self, closed: bool, newton: bool) -> Result<Vec<f64>, SolveError> {
-        let Self { lower, diagonal, upper, curvature, right } = self;
-        let with = |(d, c): (&f64, &f64)| if newton { d + c } else { *d };
-        let mut diagonal: Vec<f64> = diagonal.iter().zip(curvature).map(with).collect();
-        let mut step = right.clone();
-        if closed {
-            solve_cyclic(lower, &mut diagonal, upper, &mut step)?;
-        } else {
-            solve_tridiagonal(lower, &mut diagonal, upper, &mut step)?;
-        }
-        Ok(step)
-    }
+/// Pairs of neighbours, with one of some nodes among them, whose angles with the segment between them are to
+/// be alike.
+fn pairs(
+    nodes: &[Node],
+    among: Range<usize>,
+    cyclic: bool,
+) -> impl Iterator<Item = [usize; 2]> + '_ {
+    let pairs = among.start.max(1)..(among.end + 1).min(nodes.len());
+    let seam = cyclic.then_some([nodes.len() - 1, 0]);
+    let pairs = pairs.map(|j| [j - 1, j]).chain(seam);
+    pairs.filter(|&[i, j]| nodes[i].counts[1] && nodes[j].counts[0])
 }
 
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used)]
-    use shapespline_geometry::{Boundary, Parametrization};
+    use shapespline_geometry::{Boundary, Parametrization, length};
 
-    use super::*;
+    use super::{node::angle, *};
+    use crate::tangents::tangent;
 
     fn polygon(points: Vec<DVec3>, boundary: Boundary) -> DataPolygon {
         DataPolygon::new(points, &Parametrization::Centripetal, boundary).unwrap()
@@ -349,17 +339,55 @@ mod tests {
         let at =
             |k: usize| DVec3::new(k as f64, (k as f64 * 1.3).sin() * (1.0 + (k % 3) as f64), 0.0);
         let polygon = polygon((0..20).map(at).collect(), Boundary::ZeroCurvature);
-        let nodes: Vec<Node> = (0..20).map(|i| Node::new(&polygon, i, 1e-9, true)).collect();
-        let splits = Splits::new(&polygon, &nodes);
-        let s = splits.minimize().unwrap();
-        let least = splits.value(&s);
+        let mut splits = Splits::default();
+        splits.load(&polygon, 0..20, 1e-9, true);
+        splits.minimize().unwrap();
+        let s = splits.s.clone();
+        let anchors = splits.nodes.iter().map(|node| node.anchor).collect();
+        splits.awake = std::iter::once(0..20).collect();
+        let mut value = |s: Vec<f64>| {
+            splits.s = s;
+            splits.go(0.0);
+            splits.sum()
+        };
+        let least = value(s.clone());
         for i in 0..20 {
             for change in [-1e-4, 1e-4] {
                 let mut moved = s.clone();
                 moved[i] += change;
-                assert!(splits.value(&moved) >= least, "{i}");
+                assert!(value(moved) >= least, "{i}");
             }
         }
-        assert!(least < 0.7 * splits.value(&splits.anchor));
+        assert!(least < 0.7 * value(anchors));
+    }
+
+    /// Whatever block a node lies in, and from wherever nodes are counted.
+    #[test]
+    fn blocks_make_what_one_system_makes() {
+        let at = |k: usize| {
+            let t = k as f64;
+            let lift = if k / 50 % 7 == 3 { 0.0 } else { (1.3 * t).cos() };
+            DVec3::new((0.01 * t).cos() * 300.0, (0.01 * t).sin() * 300.0 + (0.9 * t).sin(), lift)
+        };
+        let n = MANY + 100;
+        for boundary in [Boundary::ZeroCurvature, Boundary::Circular, Boundary::Periodic] {
+            let mut points: Vec<DVec3> = (0..=n).map(at).collect();
+            if boundary == Boundary::Periodic {
+                points[n] = points[0];
+            }
+            let polygon = polygon(points, boundary);
+            let (count, zero) = (polygon.nodes(), 1e-9);
+            let blocks = tangents(&polygon, zero, false).unwrap();
+            let mut whole = vec![DVec3::ZERO; count];
+            let mut splits = Splits::default();
+            splits.load(&polygon, 0..count, zero, false);
+            splits.minimize().unwrap();
+            splits.write(&mut whole);
+            assert!(splits.nodes.iter().any(|node| node.is_free));
+            assert!(splits.nodes[1..n].iter().any(|node| !node.is_free));
+            for (i, (a, b)) in blocks.iter().zip(&whole).enumerate() {
+                assert!((*a - *b).length() <= 1e-11 * length(*b), "{i}: {a} {b}");
+            }
+        }
     }
 }
