@@ -1,5 +1,7 @@
 //! What else a curve has to do: corners at points, directions at points, a distance from the polygon.
 
+use std::borrow::Cow;
+
 use shapespline_criteria::{Calls, Checker};
 use shapespline_geometry::{
     Boundary, DVec3, DataPolygon, InputError, Parametrization, length, normalize,
@@ -115,11 +117,11 @@ impl Constraints {
     }
 
     /// The parts between corners, in order along the data: the whole where there are none.
-    pub(crate) fn parts(&self, polygon: &DataPolygon) -> Result<Vec<Part>, InputError> {
+    pub(crate) fn parts<'a>(&self, polygon: &'a DataPolygon) -> Result<Vec<Part<'a>>, InputError> {
         let n = polygon.segments();
         let ends: Vec<usize> = match (self.corners.as_slice(), polygon.is_closed()) {
             ([], _) => {
-                return Ok(vec![Part { first: 0, polygon: polygon.clone() }]);
+                return Ok(vec![Part { first: 0, polygon: Cow::Borrowed(polygon) }]);
             }
             ([first, ..], true) => self.corners.iter().copied().chain([first + n]).collect(),
             (corners, false) => [0].into_iter().chain(corners.iter().copied()).chain([n]).collect(),
@@ -135,13 +137,14 @@ impl Constraints {
 }
 
 /// The data between two corners.
-pub(crate) struct Part {
+pub(crate) struct Part<'a> {
     /// The node of the whole that it begins at.
     pub(crate) first: usize,
-    pub(crate) polygon: DataPolygon,
+    /// The whole itself where there are no corners.
+    pub(crate) polygon: Cow<'a, DataPolygon>,
 }
 
-impl Part {
+impl Part<'_> {
     /// From one node to another, past the end of closed data.
     fn between(polygon: &DataPolygon, [from, to]: [usize; 2]) -> Result<Self, InputError> {
         let (n, u) = (polygon.segments(), polygon.parameters());
@@ -158,7 +161,7 @@ impl Part {
             &Parametrization::Given(parameters.collect()),
             boundary,
         )?;
-        Ok(Self { first: from, polygon })
+        Ok(Self { first: from, polygon: Cow::Owned(polygon) })
     }
 
     /// What is asked of a part of data with so many segments: with indices of its own.

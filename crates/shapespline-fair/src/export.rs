@@ -1,5 +1,7 @@
 //! From derivatives at the nodes to cubic pieces.
 
+use std::collections::BTreeMap;
+
 use shapespline_geometry::{
     BezierPart, CubicSegment, DVec3, DataPolygon, Domain, InputError, PiecewiseCubic,
 };
@@ -25,11 +27,9 @@ pub(crate) struct Pieces {
 const SMOOTH: f64 = 1e-12;
 
 impl Pieces {
-    /// One piece between two points.
-    pub(crate) fn plain(span: &Span, legs: &Legs, units: Units) -> Self {
-        let third = span.length / 3.0 * units.length;
-        let legs = vec![[legs[0] * third, legs[4] * third]];
-        Self { breaks: Vec::new(), points: Vec::new(), legs }
+    /// One piece between two points, with its end legs.
+    pub(crate) fn plain(legs: [DVec3; 2]) -> Self {
+        Self { breaks: Vec::new(), points: Vec::new(), legs: vec![legs] }
     }
 
     /// The pieces of a segment from `start` to `end`; an extra knot where the third derivative does not
@@ -37,7 +37,8 @@ impl Pieces {
     pub(crate) fn of(span: &Span, legs: &Legs, units: Units, [start, end]: [DVec3; 2]) -> Self {
         let jumps = third_derivative_jumps(legs);
         if jumps == [false; 2] {
-            return Self::plain(span, legs, units);
+            let third = span.length / 3.0 * units.length;
+            return Self::plain([legs[0] * third, legs[4] * third]);
         }
         let delta = span.control_legs(legs).map(|leg| leg * units.length);
         let ([first, middle, last], [to_first, to_last]) = pieces(&delta);
@@ -99,21 +100,32 @@ fn third_derivative_jumps(d: &Legs) -> [bool; 2] {
     [0, 1].map(|k| (third[k + 1] - third[k]).length() * TAU > allowed)
 }
 
-/// The curve of some pieces through the points of a polygon; and the knots that are data points.
+/// The curve through the points of a polygon with the end legs of segments of one piece, and the others in
+/// several pieces; and the knots that are data points.
 pub(crate) fn assemble(
-    polygon: &DataPolygon,
-    pieces: Vec<Pieces>,
+    polygon: DataPolygon,
+    plain: Vec<[DVec3; 2]>,
+    mut others: BTreeMap<usize, Pieces>,
 ) -> Result<(PiecewiseCubic, Vec<usize>), InputError> {
+    if others.is_empty() {
+        let nodes = (0..=polygon.segments()).collect();
+        return Ok((PiecewiseCubic::through(polygon, plain)?, nodes));
+    }
     let (u, data) = (polygon.parameters(), polygon.points());
     let (mut knots, mut points, mut legs) = (vec![u[0]], vec![data[0]], Vec::new());
     let mut nodes = vec![0];
-    for (i, segment) in pieces.into_iter().enumerate() {
-        let h = u[i + 1] - u[i];
-        knots.extend(segment.breaks.iter().map(|t| u[i] + t * h));
+    for (i, own) in plain.into_iter().enumerate() {
+        match others.remove(&i) {
+            None => legs.push(own),
+            Some(segment) => {
+                let h = u[i + 1] - u[i];
+                knots.extend(segment.breaks.iter().map(|t| u[i] + t * h));
+                points.extend(segment.points);
+                legs.extend(segment.legs);
+            }
+        }
         knots.push(u[i + 1]);
-        points.extend(segment.points);
         points.push(data[i + 1]);
-        legs.extend(segment.legs);
         nodes.push(knots.len() - 1);
     }
     let domain = if polygon.is_closed() { Domain::Closed } else { Domain::Open };

@@ -1,6 +1,7 @@
 //! The ladder on the whole curve: windows, widened where they must be, and the exact check.
 
-use shapespline_banded::SolveError;
+use std::collections::BTreeMap;
+
 use shapespline_criteria::Criterion;
 use shapespline_geometry::{BezierPart, DVec3, DVec4, length};
 
@@ -8,7 +9,7 @@ use crate::{
     Energy, FairOptions, Method, Phase,
     chain::Chain,
     control::Control,
-    cubic::plain_cubic,
+    cubic::Plain,
     element::Node,
     export::Pieces,
     rows::Rules,
@@ -21,11 +22,10 @@ use crate::{
 };
 
 /// What the ladder came to.
-pub(crate) struct Found {
-    pub(crate) nodes: Vec<Node>,
-    pub(crate) plain: Vec<Node>,
-    /// Whether a segment was solved for; the others are those of the plain cubic.
-    pub(crate) solved: Vec<bool>,
+pub(crate) struct Found<'a> {
+    pub(crate) plain: &'a Plain<'a>,
+    /// The segments that were solved for, with what was found at their ends; all others are the plain cubic's.
+    pub(crate) solved: BTreeMap<usize, [Node; 2]>,
     pub(crate) method: Method,
     /// The criteria that hold a segment back, with the segment.
     pub(crate) active: Vec<(Criterion, usize)>,
@@ -37,16 +37,15 @@ pub(crate) struct Found {
 const CONE: f64 = 0.95;
 
 /// Climbs the ladder as far as the data need.
-pub(crate) fn climb(
+pub(crate) fn climb<'a>(
     demands: &Demands<'_>,
+    plain: &'a Plain<'a>,
     options: &FairOptions,
     control: &mut Control<'_>,
-) -> Result<Found, SolveError> {
-    let plain = plain_cubic(demands)?;
+) -> Found<'a> {
     let mut found = Found {
-        nodes: plain.clone(),
-        solved: vec![false; demands.checker.polygon().segments()],
         plain,
+        solved: BTreeMap::new(),
         method: Method::Cubic,
         active: Vec::new(),
         open: Vec::new(),
@@ -61,20 +60,19 @@ pub(crate) fn climb(
         Energy::Parametric => found.open_windows(demands, rules, control),
         Energy::Bending => found.bend(demands, rules, control),
     }
-    Ok(found)
+    found
 }
 
 /// Free nodes beside a failing segment in the widest windows short of the whole curve: in these, too, all
 /// is put to the closed-form start if nothing else helps.
 const WIDE: usize = 16 * BESIDE;
 
-impl Found {
+impl Found<'_> {
     /// The segments in which the plain cubic fails.
     fn failing(&self, demands: &Demands<'_>) -> Vec<usize> {
         let checker = demands.checker;
-        let legs = |i: usize| self.pieces(demands, i).legs[0];
-        let mut failing: Vec<usize> =
-            checker.all_faults(legs).into_iter().map(|(i, _)| i).collect();
+        let faults = checker.all_faults(|i| self.plain.legs(i));
+        let mut failing: Vec<usize> = faults.into_iter().map(|(i, _)| i).collect();
         let constraints = demands.constraints;
         if constraints.max_deviation.is_some() || !constraints.tangents.is_empty() {
             let strays = |&i: &usize| {
@@ -91,14 +89,14 @@ impl Found {
     /// Whether any control point lies farther from its chord than it may.
     pub(crate) fn any_deviates(&self, demands: &Demands<'_>) -> bool {
         demands.constraints.max_deviation.is_some()
-            && (0..self.solved.len())
+            && (0..demands.checker.polygon().segments())
                 .any(|i| deviates(demands, i, &self.pieces(demands, i).parts(ends_of(demands, i))))
     }
 
     /// Whether the curve has another direction at a node of a segment than is asked for there.
     fn leaves_direction(&self, demands: &Demands<'_>, i: usize) -> bool {
-        [i, (i + 1) % self.nodes.len()].into_iter().any(|node| {
-            let q = self.nodes[node].q;
+        let nodes = [i, (i + 1) % demands.checker.polygon().nodes()];
+        nodes.into_iter().zip(self.nodes(demands, i)).any(|(node, Node { q, .. })| {
             demands
                 .constraints
                 .direction(node)
@@ -106,15 +104,25 @@ impl Found {
         })
     }
 
+    /// What is known at the ends of a segment.
+    pub(crate) fn nodes(&self, demands: &Demands<'_>, i: usize) -> [Node; 2] {
+        self.solved.get(&i).copied().unwrap_or_else(|| self.plain_nodes(demands, i))
+    }
+
+    /// What the plain cubic has there.
+    pub(crate) fn plain_nodes(&self, demands: &Demands<'_>, i: usize) -> [Node; 2] {
+        let count = demands.checker.polygon().nodes();
+        [i, (i + 1) % count].map(|node| self.plain.node(node, demands.units))
+    }
+
     /// The pieces of a segment.
     pub(crate) fn pieces(&self, demands: &Demands<'_>, i: usize) -> Pieces {
-        let (span, ends) = (demands.span(i), [i, (i + 1) % self.nodes.len()]);
-        let [start, end] = ends.map(|j| self.nodes[j]);
-        let legs = span.legs(start, end);
-        if self.solved[i] {
-            Pieces::of(&span, &legs, demands.units, ends_of(demands, i))
-        } else {
-            Pieces::plain(&span, &legs, demands.units)
+        match self.solved.get(&i) {
+            None => Pieces::plain(self.plain.legs(i)),
+            Some(&[start, end]) => {
+                let span = demands.span(i);
+                Pieces::of(&span, &span.legs(start, end), demands.units, ends_of(demands, i))
+            }
         }
     }
 
@@ -123,13 +131,13 @@ impl Found {
         let polygon = demands.checker.polygon();
         let mut failing = self.failing(demands);
         self.open.clone_from(&failing);
-        let count = self.nodes.len();
+        let count = polygon.nodes();
         for beside in [BESIDE, 4 * BESIDE, WIDE, count] {
             let mut unsolved = Vec::new();
             for window in windows(&failing, count, polygon.is_closed(), beside) {
                 let whole = window.count == count;
                 let thorough = whole || beside == WIDE;
-                let mut chain = window.chain(demands, &self.plain, rules);
+                let mut chain = window.chain(demands, self.plain, rules);
                 let plain = chain.nodes.clone();
                 let own = || failing.iter().copied().filter(|&k| window.touches(k, count));
                 let Some(method) = solve(demands, &mut chain, thorough, control) else {
@@ -147,7 +155,7 @@ impl Found {
                     unsolved.extend(own());
                     continue;
                 }
-                self.put(&chain, last.unwrap_or(method));
+                self.put(demands, &chain, last.unwrap_or(method));
                 self.open.retain(|&k| !window.touches(k, count));
                 self.open.extend(open);
             }
@@ -162,8 +170,8 @@ impl Found {
 
     /// Minimises the bending energy of the whole curve.
     fn bend(&mut self, demands: &Demands<'_>, rules: Rules, control: &mut Control<'_>) {
-        let whole = Window { start: 0, count: self.nodes.len() };
-        let mut chain = whole.chain(demands, &self.plain, rules);
+        let whole = Window { start: 0, count: demands.checker.polygon().nodes() };
+        let mut chain = whole.chain(demands, self.plain, rules);
         let mut method = Method::Elastic;
         chain.relax_speeds();
         if !chain.all_hold() {
@@ -172,18 +180,15 @@ impl Found {
         finish_bending(&mut chain, control);
         self.open = certify(demands, &mut chain, control);
         let last = fall_back(demands, &mut chain, &mut self.open, control);
-        self.put(&chain, last.unwrap_or(method));
+        self.put(demands, &chain, last.unwrap_or(method));
     }
 
     /// Takes over what a chain has found.
-    fn put(&mut self, chain: &Chain, method: Method) {
-        let count = self.nodes.len();
-        for (j, node) in chain.nodes.iter().enumerate() {
-            self.nodes[(chain.first + j) % count] = *node;
-        }
+    fn put(&mut self, demands: &Demands<'_>, chain: &Chain, method: Method) {
+        let segments = demands.checker.polygon().segments();
         for k in 0..chain.segments.len() {
-            let i = index(chain, k, self.solved.len());
-            self.solved[i] = true;
+            let i = index(chain, k, segments);
+            self.solved.insert(i, chain.ends(k).map(|j| chain.nodes[j]));
             self.active.retain(|&(_, segment)| segment != i);
             self.active.extend(chain.binding(k).into_iter().map(|criterion| (criterion, i)));
         }

@@ -4,7 +4,7 @@ use glam::DVec3;
 use shapespline_criteria::{Calls, Checker, separation};
 use shapespline_geometry::{DataPolygon, Dimension, length, normalize};
 
-use crate::{Constraints, element::Span, energy::Energy};
+use crate::{Constraints, cubic::sum, element::Span, energy::Energy};
 
 /// Turns above 163° (`‖l + l'‖` at most this) have no forward direction.
 const SHARPEST: f64 = 0.3;
@@ -71,11 +71,11 @@ pub(crate) struct Units {
 impl Units {
     pub(crate) fn of(polygon: &DataPolygon) -> Self {
         let n = polygon.segments();
-        let mean = |values: &dyn Fn(usize) -> f64| {
-            let largest = (0..n).map(values).fold(0.0, f64::max);
-            largest * ((0..n).map(|i| values(i) / largest).sum::<f64>() / n as f64)
-        };
-        Self { length: mean(&|i| length(polygon.chord(i))), time: mean(&|i| polygon.spacing(i)) }
+        let share = 1.0 / n as f64;
+        Self {
+            length: sum(n, |i| length(polygon.chord(i)) * share),
+            time: sum(n, |i| polygon.spacing(i) * share),
+        }
     }
 }
 

@@ -1,6 +1,6 @@
 //! The curve.
 
-use std::ops::ControlFlow;
+use std::{borrow::Cow, collections::BTreeMap, ops::ControlFlow};
 
 use shapespline_criteria::{
     Checker, Criteria, Criterion, CurveChecker, INTERPOLATION, ShapeReport, Tolerances,
@@ -14,6 +14,8 @@ use crate::{
     Constraints, Diagnostics, Energy, FairOptions, Fit, FitError, Method, Status, Step,
     constraints::Part,
     control::Control,
+    cubic::{Plain, sum},
+    element::Node,
     energy,
     export::{Pieces, assemble},
     ladder::{Found, climb},
@@ -109,19 +111,18 @@ impl FairSpline {
             constraints.refuse_conflicts(&checker.with_free_nodes(&constraints.corners))?;
         }
         let mut control = Control::new(options.max_iterations, monitor);
+        let (boundary, energy) = (polygon.boundary(), options.energy);
         let mut whole = Whole::of(&polygon);
         for part in constraints.parts(&polygon)? {
             whole.add(&part, options, &mut control)?;
         }
-        let (curve, nodes) = assemble(&polygon, whole.pieces)?;
-        let curve = Self {
-            curve,
-            nodes,
-            boundary: polygon.boundary(),
-            energy: options.energy,
-            corners: constraints.corners.clone(),
+        let (curve, nodes) = assemble(polygon, whole.legs, whole.others)?;
+        let corners = constraints.corners.clone();
+        let curve = Self { curve, nodes, boundary, energy, corners };
+        let report = match whole.report {
+            Some(report) => report,
+            None => curve.check(options.criteria, options.tolerances)?,
         };
-        let report = curve.check(options.criteria, options.tolerances)?;
         // What rounding hides in the end could not be widened: the report lists it.
         let proved = report.undecided.is_empty() || !control.is_over();
         let status = match (control.is_interrupted(), report.ok() && proved) {
@@ -222,8 +223,12 @@ impl FairSpline {
         tolerances: Tolerances,
     ) -> Result<ShapeReport, InputError> {
         let polygon = self.polygon()?;
-        let curve = PiecewiseBezier::from(&self.curve);
         let tolerances = tolerances.validate()?;
+        if self.nodes.len() == self.curve.knots().len() && self.corners.is_empty() {
+            let legs = self.curve.legs();
+            return Ok(Checker::new(&polygon, criteria, tolerances).report(|i| legs[i]));
+        }
+        let curve = PiecewiseBezier::from(&self.curve);
         match CurveChecker::new(&polygon, &curve, criteria, tolerances, INTERPOLATION) {
             Ok(checker) => Ok(checker.with_free_nodes(&self.corners).report()),
             // The curve is made of the points that it is checked against.
@@ -234,87 +239,112 @@ impl FairSpline {
 
 /// The parts of a curve, put together.
 struct Whole {
-    /// Those of every segment, in order.
-    pieces: Vec<Pieces>,
+    segments: usize,
+    /// End legs of every segment, as the plain cubics have them.
+    legs: Vec<[DVec3; 2]>,
+    /// The segments that were solved for.
+    others: BTreeMap<usize, Pieces>,
     method: Method,
     energy: f64,
     energy_cubic: f64,
     active: Vec<(Criterion, usize)>,
     tangent_scale: [f64; 2],
+    /// The report on the whole, where all of it was proved on the way.
+    report: Option<ShapeReport>,
 }
 
 impl Whole {
     /// Nothing yet.
     fn of(polygon: &DataPolygon) -> Self {
         Self {
-            pieces: vec![Pieces::default(); polygon.segments()],
+            segments: polygon.segments(),
+            legs: Vec::new(),
+            others: BTreeMap::new(),
             method: Method::Cubic,
             energy: 0.0,
             energy_cubic: 0.0,
             active: Vec::new(),
             tangent_scale: [1.0; 2],
+            report: None,
         }
     }
 
     /// Finds the curve of a part, and adds it.
     fn add(
         &mut self,
-        part: &Part,
+        part: &Part<'_>,
         options: &FairOptions,
         control: &mut Control<'_>,
     ) -> Result<(), FitError> {
-        let total = self.pieces.len();
+        let total = self.segments;
+        let polygon = part.polygon.as_ref();
         let constraints = part.own(&options.constraints, total);
         // What lies near enough by itself is the curve without the limit.
         let unlimited = Constraints { max_deviation: None, ..constraints.clone() };
-        let checker = Checker::new(&part.polygon, options.criteria, options.tolerances);
-        let units = Units::of(&part.polygon);
+        let plain = Plain::of(polygon)?;
+        let checker = Checker::new(polygon, options.criteria, options.tolerances);
+        let units = Units::of(polygon);
         let mut demands = Demands { checker: &checker, units, constraints: &unlimited };
-        let mut found = climb(&demands, options, control)?;
+        let mut found = climb(&demands, &plain, options, control);
         demands.constraints = &constraints;
         if found.any_deviates(&demands) {
-            found = climb(&demands, options, control)?;
+            found = climb(&demands, &plain, options, control);
         }
         let place = |i: usize| (part.first + i) % total;
-        for i in 0..part.polygon.segments() {
-            self.pieces[place(i)] = found.pieces(&demands, i);
-        }
+        self.others.extend(found.solved.keys().map(|&i| (place(i), found.pieces(&demands, i))));
         self.method = self.method.max(found.method);
-        let scales = tangent_scale(&part.polygon, &found);
+        let scales = tangent_scale(&demands, &found);
         for (whole, own) in self.tangent_scale.iter_mut().zip(scales) {
             *whole *= own;
         }
-        self.energy += energy_of(&demands, &found.nodes, options.energy);
-        self.energy_cubic += energy_of(&demands, &found.plain, options.energy);
+        let [energy, energy_cubic] = energies(&demands, &found, options.energy);
+        self.energy += energy;
+        self.energy_cubic += energy_cubic;
         self.active.extend(found.active.iter().map(|&(criterion, i)| (criterion, place(i))));
+        if let Cow::Borrowed(_) = part.polygon {
+            let proved = found.open.is_empty();
+            self.report = proved.then(|| checker.report_of(&[], |i| plain.legs(i)));
+            self.legs = plain.all_legs();
+        } else {
+            self.legs.resize(total, [DVec3::ZERO; 2]);
+            (0..polygon.segments()).for_each(|i| self.legs[place(i)] = plain.legs(i));
+        }
         Ok(())
     }
 }
 
-/// The energy of a curve, in the user's units.
-fn energy_of(demands: &Demands<'_>, nodes: &[crate::element::Node], energy: Energy) -> f64 {
-    let segments = demands.checker.polygon().segments();
-    let value = |i: usize| {
+/// The energies of a curve and of the plain cubic, in the user's units.
+fn energies(demands: &Demands<'_>, found: &Found<'_>, energy: Energy) -> [f64; 2] {
+    let Units { length, time } = demands.units;
+    let of = |i: usize, [start, end]: [Node; 2]| {
         let span = demands.span(i);
-        let legs = span.legs(nodes[i], nodes[(i + 1) % nodes.len()]);
+        let legs = span.legs(start, end);
         match energy {
-            Energy::Parametric => energy::parametric(&span, &legs),
-            Energy::Bending => energy::bending(&span, &legs),
+            Energy::Parametric => {
+                energy::parametric(&span, &legs) * (length / time) * (length / time) / time
+            }
+            Energy::Bending => energy::bending(&span, &legs) / length,
         }
     };
-    let sum: f64 = (0..segments).map(value).sum();
-    let Units { length, time } = demands.units;
-    match energy {
-        Energy::Parametric => sum * (length / time) * (length / time) / time,
-        Energy::Bending => sum / length,
-    }
+    let plain = |i: usize| match energy {
+        Energy::Parametric => found.plain.energy(i),
+        Energy::Bending => of(i, found.plain_nodes(demands, i)),
+    };
+    let cubic = sum(demands.checker.polygon().segments(), plain);
+    let more = found.solved.iter().map(|(&i, &nodes)| of(i, nodes) - plain(i)).sum::<f64>();
+    [cubic + more, cubic]
 }
 
 /// By how much given end tangents were shortened.
-fn tangent_scale(polygon: &DataPolygon, found: &Found) -> [f64; 2] {
-    [0, polygon.segments()].map(|j| {
-        let scale = || found.nodes[j].q.length() / found.plain[j].q.length();
-        if is_given(polygon, j) { scale() } else { 1.0 }
+fn tangent_scale(demands: &Demands<'_>, found: &Found<'_>) -> [f64; 2] {
+    let polygon = demands.checker.polygon();
+    [0, 1].map(|end| {
+        let i = end * (polygon.segments() - 1);
+        if !is_given(polygon, end * polygon.segments()) {
+            return 1.0;
+        }
+        let [own, plain] = [found.nodes(demands, i), found.plain_nodes(demands, i)];
+        own[end].q.length() / plain[end].q.length()
     })
 }
 

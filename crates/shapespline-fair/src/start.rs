@@ -129,7 +129,9 @@ mod tests {
     use shapespline_geometry::{Boundary, Parametrization};
 
     use super::*;
-    use crate::{Constraints, rows::Rules, segment::Units, solve::restart_all, window::Window};
+    use crate::{
+        Constraints, cubic::Plain, rows::Rules, segment::Units, solve::restart_all, window::Window,
+    };
 
     /// Points of a walk in space or in the plane, lengths over one decade.
     fn walk(seed: u64, planar: bool) -> DataPolygon {
@@ -157,9 +159,10 @@ mod tests {
             let checker = Checker::new(&polygon, Criteria::ALL, Tolerances::default());
             let (units, constraints) = (Units::of(&polygon), &Constraints::default());
             let demands = Demands { checker: &checker, units, constraints };
-            let nodes = vec![Node::default(); polygon.nodes()];
+            let plain = Plain::of(&polygon).unwrap();
             let rules = Rules { cones: [0.19, 0.19], exact_middles: false };
-            let mut chain = Window { start: 0, count: nodes.len() }.chain(&demands, &nodes, rules);
+            let whole = Window { start: 0, count: polygon.nodes() };
+            let mut chain = whole.chain(&demands, &plain, rules);
             restart_all(&demands, &mut chain);
             assert!(chain.all_hold(), "walk {seed}: {:?}", chain.failing());
         }

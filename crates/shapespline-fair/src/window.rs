@@ -4,6 +4,7 @@ use shapespline_geometry::DataPolygon;
 
 use crate::{
     chain::{Chain, Freedom},
+    cubic::Plain,
     element::Node,
     rows::Rules,
     segment::Demands,
@@ -73,10 +74,11 @@ impl Window {
         (segment + nodes - self.start) % nodes < self.count
     }
 
-    /// The chain of a window, at nodes of the whole curve.
-    pub(crate) fn chain(self, demands: &Demands<'_>, nodes: &[Node], rules: Rules) -> Chain {
+    /// The chain of a window, as the plain cubic has it.
+    pub(crate) fn chain(self, demands: &Demands<'_>, plain: &Plain<'_>, rules: Rules) -> Chain {
         let polygon = demands.checker.polygon();
-        let (total, n) = (nodes.len(), polygon.segments());
+        let (total, n) = (polygon.nodes(), polygon.segments());
+        let plain = |i: usize| plain.node(i, demands.units);
         let whole = self.count == total;
         // With a held node on each side, where there is one.
         let (first, count) = if whole {
@@ -99,10 +101,10 @@ impl Window {
         // Where a direction is asked for the curve begins with it.
         let node = |i: usize| match held(i) {
             Freedom::Along(t) => {
-                let Node { q, r } = nodes[i];
+                let Node { q, r } = plain(i);
                 Node { q: t * q.dot(t).max(SLOWEST * q.length()), r }
             }
-            _ => nodes[i],
+            _ => plain(i),
         };
         let index = |j: usize| (first + j) % total;
         // Of a closed curve the last segment ends at the first node.

@@ -183,6 +183,28 @@ fn curves_are_twice_continuously_differentiable() {
     }
 }
 
+/// What a search has proved on its way is what a check of its curve finds, and on all threads as on one.
+#[test]
+fn the_report_of_a_fit_is_that_of_its_curve() {
+    let at = |t: f64| DVec3::new(t.cos(), t.sin(), t);
+    let long: Vec<DVec3> = (0..9000).map(|k| at(FRAC_PI_3 * f64::from(k))).collect();
+    let circular = DataPolygon::new(long.clone(), &Parametrization::Chordal, Boundary::Circular);
+    let options = FairOptions::default();
+    for polygon in [
+        readme(),
+        planar(1e-3),
+        helix(),
+        coil(),
+        natural(long, Dimension::Three),
+        circular.unwrap(),
+    ] {
+        let found = fit(polygon, Energy::Parametric);
+        let report = found.curve.check(options.criteria, options.tolerances).unwrap();
+        assert_eq!(found.report, report);
+        assert!(found.report.ok());
+    }
+}
+
 /// A walk whose steps have lengths over so many decades.
 fn walk(seed: usize, decades: f64, dimension: Dimension) -> DataPolygon {
     let mut random = Random::new(seed as u64);

@@ -6,12 +6,15 @@ use glam::DVec3;
 use rayon::prelude::*;
 use shapespline_geometry::{DataPolygon, InputError, PiecewiseBezier, length, polynomial::Sign};
 
-use super::{Question, Segment, corner::Beyond, decide, measure};
+use super::{
+    Question, Segment,
+    corner::Beyond,
+    cubics::{Single, single_pieces},
+    decide, measure,
+};
 use crate::{
     Checker, Criteria, Criterion, Faults, Notes, Record, ShapeReport, Tolerances, Undecided,
-    checker::Cubic,
-    notes::notes,
-    rounding::{LEG_ERROR, Lean, UNIT},
+    checker::Cubic, notes::notes, rounding::LEG_ERROR,
 };
 
 /// Segments from on which they are checked on all threads. Not fewer, and none of rayon's iterators below:
@@ -81,9 +84,9 @@ pub enum CurveError {
 #[derive(Debug, Clone)]
 pub struct CurveChecker<'a> {
     checker: Checker<'a>,
-    curve: &'a PiecewiseBezier,
-    /// Whether each piece is the curve between two neighbouring points.
-    aligned: bool,
+    pub(super) curve: &'a PiecewiseBezier,
+    /// The piece that each segment is, where it is one.
+    pub(super) single: Single,
 }
 
 impl<'a> CurveChecker<'a> {
@@ -110,8 +113,8 @@ impl<'a> CurveChecker<'a> {
             return Err(CurveError::Dimension { points, curve });
         }
         let checker = Checker::new(polygon, criteria, tolerances.validate()?);
-        let aligned = is_aligned(polygon.parameters(), curve.breaks())?;
-        let checked = Self { checker, curve, aligned };
+        let single = single_pieces(polygon.parameters(), curve.breaks())?;
+        let checked = Self { checker, curve, single };
         checked.check_position(interpolation)?;
         Ok(checked)
     }
@@ -139,16 +142,16 @@ impl<'a> CurveChecker<'a> {
     /// thread), and returns `None` once that breaks.
     #[must_use]
     pub fn report_with(&self, go_on: &(dyn Fn() -> ControlFlow<()> + Sync)) -> Option<ShapeReport> {
-        if self.is_cubic() {
-            return Some(self.report_on_cubics());
-        }
-        let of = |i: usize| go_on().is_continue().then(|| self.check_segment(i));
+        let of = |&i: &usize| match self.cubic(i) {
+            Some(cubic) => Some(self.check_cubic(i, &cubic)),
+            None => go_on().is_continue().then(|| self.check_segment(i)),
+        };
         let says = |found: &Option<Found>| found.as_ref().is_none_or(|found| !found.is_empty());
-        let segments = 0..self.checker.calls().len();
-        let found: Vec<Found> = if segments.len() < MANY {
-            segments.map(of).filter(says).collect::<Option<_>>()?
+        let open = self.open_segments();
+        let found: Vec<Found> = if open.len() < MANY {
+            open.iter().map(of).filter(says).collect::<Option<_>>()?
         } else {
-            segments.into_par_iter().with_min_len(64).map(of).filter(says).collect::<Option<_>>()?
+            open.par_iter().with_min_len(64).map(of).filter(says).collect::<Option<_>>()?
         };
         let mut report = self.checker.blank_report();
         for Found { records, undecided } in found {
@@ -165,8 +168,8 @@ impl<'a> CurveChecker<'a> {
     /// unsatisfied with margin zero, and [`CurveChecker::undecided`] has the interval.
     #[must_use]
     pub fn record(&self, segment: usize, criterion: Criterion) -> Record {
-        if self.is_cubic() {
-            let record = self.checker.record_of(segment, &self.cubic(segment), criterion);
+        if let Some(cubic) = self.cubic(segment) {
+            let record = self.checker.record_of(segment, &cubic, criterion);
             return self.with_corners(record);
         }
         let mut record = Record {
@@ -197,8 +200,9 @@ impl<'a> CurveChecker<'a> {
     /// What stays open of a criterion on a segment.
     #[must_use]
     pub fn undecided(&self, segment: usize, criterion: Criterion) -> Option<Undecided> {
-        if self.is_cubic() {
-            let (of, [open, violated]) = (Faults::of(criterion), self.cubic_verdict(segment));
+        if let Some(cubic) = self.cubic(segment) {
+            let (of, [open, violated]) =
+                (Faults::of(criterion), self.cubic_verdict(segment, &cubic));
             let interval = self.checker.interval(segment, open.only(of));
             let is_open = open.any(of) && !violated.any(of);
             return is_open.then_some(Undecided { segment, criterion, interval });
@@ -230,6 +234,9 @@ impl<'a> CurveChecker<'a> {
         let mut found = Found::default();
         let calls = self.checker.calls()[i];
         if calls.is_empty() {
+            return found;
+        }
+        if self.is_proved(i) {
             return found;
         }
         let pieces = self.segment(i);
@@ -268,60 +275,12 @@ impl<'a> CurveChecker<'a> {
         polygon.parameters()[segment] + local * polygon.spacing(segment)
     }
 
-    /// Whether each segment is one polynomial cubic.
-    fn is_cubic(&self) -> bool {
-        self.aligned && self.curve.degree() == 3 && !self.curve.is_rational()
-    }
-
     /// A vector along the tangent at the start (0) or the end (1) of a segment, and what it may be off by.
     pub(super) fn end_tangent(&self, i: usize, end: usize) -> (DVec3, f64) {
-        if self.is_cubic() {
-            let Cubic { legs, far, .. } = self.cubic(i);
-            (legs[end], LEG_ERROR * far)
-        } else {
-            self.segment(i).end_tangent(end)
+        match self.cubic(i) {
+            Some(Cubic { legs, far, .. }) => (legs[end], LEG_ERROR * far),
+            None => self.segment(i).end_tangent(end),
         }
-    }
-
-    fn end_legs(&self, i: usize) -> [DVec3; 2] {
-        let p = self.curve.piece(i);
-        [(p[1] - p[0]).truncate(), (p[3] - p[2]).truncate()]
-    }
-
-    /// A segment that is one polynomial cubic, between its own end points.
-    fn cubic(&self, i: usize) -> Cubic {
-        let p = self.curve.piece(i);
-        let far = p[0].abs().max(p[3].abs()).truncate().max_element();
-        Cubic { legs: self.end_legs(i), chord: (p[3] - p[0]).truncate(), far }
-    }
-
-    /// The report where each segment is one polynomial cubic. Many are judged at once by the chords of the
-    /// polygon; those that end off its points by more than rounding, one by one by their own.
-    fn report_on_cubics(&self) -> ShapeReport {
-        let points = self.checker.polygon().points();
-        let ends_off = |i: usize| {
-            let p = self.curve.piece(i);
-            let off = |end: usize, k: usize| (p[k].truncate() - points[end]).abs().max_element();
-            off(i, 0) + off(i + 1, 3) > 2.0 * UNIT * self.cubic(i).far
-        };
-        let faults = self.checker.all_faults(|i| self.end_legs(i));
-        let apart = (0..self.checker.calls().len()).filter(|&i| ends_off(i));
-        let apart =
-            apart.filter(|&i| !self.checker.judge(i, &self.cubic(i), Lean::Against).is_empty());
-        let own = faults.iter().map(|fault| fault.0).filter(|&i| !ends_off(i));
-        let corners = self.corner_faults().into_iter().map(|fault| fault.0);
-        let mut open: Vec<usize> = own.chain(apart).chain(corners).collect();
-        open.sort_unstable();
-        open.dedup();
-        let record = |i: usize, criterion| self.record(i, criterion);
-        self.checker.report_with(&open, |i| self.cubic_verdict(i), record)
-    }
-
-    /// What is not proved of a segment that is one polynomial cubic, and what is violated.
-    fn cubic_verdict(&self, i: usize) -> [Faults; 2] {
-        let cubic = self.cubic(i);
-        [Lean::Against, Lean::For]
-            .map(|lean| self.checker.judge(i, &cubic, lean).and(self.corner_faults_of(i, lean)))
     }
 
     fn segment(&self, i: usize) -> Segment {
@@ -341,9 +300,9 @@ impl<'a> CurveChecker<'a> {
         let largest = low.abs().max(high.abs()).max_element();
         let allowed = interpolation * length(high - low) + 16.0 * f64::EPSILON * largest;
         for i in 0..polygon.segments() {
-            if self.aligned {
+            if let Some(piece) = self.single(i) {
                 // Nothing to cut: the ends of the piece are all there is to compare.
-                let p = self.curve.piece(i);
+                let p = self.curve.piece(piece);
                 let off = |end: usize, k: usize| (p[k].truncate() / p[k].w - points[end]).length();
                 if off(i, 0) <= allowed && off(i + 1, p.len() - 1) <= allowed {
                     continue;
@@ -381,32 +340,15 @@ impl<'a> CurveChecker<'a> {
 }
 
 #[derive(Debug, Default)]
-struct Found {
-    records: Vec<Record>,
-    undecided: Vec<Undecided>,
+pub(super) struct Found {
+    pub(super) records: Vec<Record>,
+    pub(super) undecided: Vec<Undecided>,
 }
 
 impl Found {
     fn is_empty(&self) -> bool {
         self.records.is_empty() && self.undecided.is_empty()
     }
-}
-
-/// Whether the breaks are the parameters; an error where the curve does not reach them.
-fn is_aligned(u: &[f64], breaks: &[f64]) -> Result<bool, CurveError> {
-    let [start, end] = [breaks[0], breaks[breaks.len() - 1]];
-    let n = u.len() - 1;
-    let close = |a: f64, b: f64, h: f64| (a - b).abs() <= 1e-12 * h;
-    let (h0, hn) = (u[1] - u[0], u[n] - u[n - 1]);
-    for (index, reaches) in
-        [(0, u[0] >= start || close(u[0], start, h0)), (n, u[n] <= end || close(u[n], end, hn))]
-    {
-        if !reaches {
-            return Err(CurveError::Domain { index, value: u[index], start, end });
-        }
-    }
-    let spacing = |i: usize| u[(i + 1).min(n)] - u[i.min(n - 1)];
-    Ok(breaks.len() == u.len() && (0..=n).all(|i| close(u[i], breaks[i], spacing(i))))
 }
 
 /// The report on any piecewise Bézier curve through the points of a polygon.

@@ -17,15 +17,17 @@ use crate::{
 const BLOCK: usize = 4096;
 
 impl CurveChecker<'_> {
-    /// What is not proved of turning at corners, ascending by segment.
+    /// What is not proved of turning at corners, ascending by segment: of those that are one cubic.
     pub(super) fn corner_faults(&self) -> Vec<(usize, Faults)> {
         let n = self.checker().calls().len();
         let of = |i: usize| (i, self.corner_faults_of(i, Lean::Against));
         let fails = |fault: &(usize, Faults)| !fault.1.is_empty();
+        let is_cubic = |&i: &usize| self.cubic(i).is_some();
         if n < 2 * BLOCK {
-            (0..n).map(of).filter(fails).collect()
+            (0..n).filter(is_cubic).map(of).filter(fails).collect()
         } else {
-            (0..n).into_par_iter().with_min_len(BLOCK).map(of).filter(fails).collect()
+            let all = (0..n).into_par_iter().with_min_len(BLOCK);
+            all.filter(is_cubic).map(of).filter(fails).collect()
         }
     }
 

@@ -11,6 +11,7 @@
 
 mod checker;
 mod corner;
+mod cubics;
 mod decide;
 mod measure;
 mod pieces;

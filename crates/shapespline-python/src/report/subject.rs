@@ -175,8 +175,9 @@ impl Subject {
         match self {
             Self::Own(curve) => {
                 let polygon = curve.polygon()?;
-                if curve.nodes().is_some() {
-                    // Several pieces per segment: decided piece by piece.
+                let broken = |nodes: &[usize]| nodes.len() < curve.cubic().knots().len();
+                if curve.nodes().is_some_and(broken) || !curve.corners().is_empty() {
+                    // Several pieces per segment, or nothing asked at corners: decided piece by piece.
                     let pieces = PiecewiseBezier::from(curve.cubic());
                     return CurveChecker::new(
                         &polygon,
