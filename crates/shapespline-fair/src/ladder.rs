@@ -138,13 +138,12 @@ impl Found<'_> {
                 let whole = window.count == count;
                 let thorough = whole || beside == WIDE;
                 let mut chain = window.chain(demands, self.plain, rules);
-                let plain = chain.nodes.clone();
                 let own = || failing.iter().copied().filter(|&k| window.touches(k, count));
                 let Some(method) = solve(demands, &mut chain, thorough, control) else {
                     unsolved.extend(own());
                     continue;
                 };
-                finish_parametric(demands, &mut chain, &plain, control);
+                finish_parametric(demands, &mut chain, control);
                 let mut open = certify(demands, &mut chain, control);
                 let last = if open.is_empty() || !thorough {
                     None

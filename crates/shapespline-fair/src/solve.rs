@@ -5,7 +5,6 @@ use crate::{
     barrier::Barrier,
     chain::{Chain, Freedom},
     control::Control,
-    element::Node,
     energy,
     mend::{mend, refresh, set_start, shorten},
     newton::Limits,
@@ -24,7 +23,7 @@ pub(crate) const LAST: f64 = 1e-3;
 /// Searches for segments that nearly stop.
 const ROUNDS: usize = 4;
 
-/// Bending energy times length above which a segment does: half a turn evenly spread has π².
+/// Bending energy times length above which a segment nearly stops: half a turn evenly spread has π².
 const SLOW: f64 = 20.0;
 
 /// Finds a feasible chain (by all means if it is to be `thorough`), and brings its parametric energy down. The method that it took, or nothing
@@ -64,19 +63,17 @@ pub(crate) fn solve(
     Some(method)
 }
 
-/// Brings the parametric energy of a feasible chain down to the end. `plain` are the nodes of the plain
-/// cubic.
+/// Brings the parametric energy of a feasible chain down to the end.
 pub(crate) fn finish_parametric(
     demands: &Demands<'_>,
     chain: &mut Chain,
-    plain: &[Node],
     control: &mut Control<'_>,
 ) {
     // Where the curve nearly stops, ∫|Q''|²du does not see how it bends.
     for _ in 0..ROUNDS {
         let slow: Vec<usize> = (0..chain.segments.len())
             .filter(|&k| chain.segments[k].energy == Energy::Parametric)
-            .filter(|&k| is_slow(chain, plain, k))
+            .filter(|&k| is_slow(chain, k))
             .collect();
         if slow.is_empty() || control.is_over() {
             break;
@@ -186,11 +183,8 @@ fn start_all(demands: &Demands<'_>, chain: &mut Chain, shortens: bool) -> bool {
     false
 }
 
-/// Whether a segment nearly stops, and bends more for it than the plain cubic.
-fn is_slow(chain: &Chain, plain: &[Node], k: usize) -> bool {
+/// Whether a segment nearly stops.
+fn is_slow(chain: &Chain, k: usize) -> bool {
     let span = chain.segments[k].span;
-    let own = energy::bending(&span, &chain.legs(k));
-    let [start, end] = chain.ends(k);
-    own * span.length > SLOW
-        && own > 1.05 * energy::bending(&span, &span.legs(plain[start], plain[end]))
+    energy::bending(&span, &chain.legs(k)) * span.length > SLOW
 }
