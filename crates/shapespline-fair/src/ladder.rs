@@ -15,9 +15,7 @@ use crate::{
     rows::Rules,
     segment::Demands,
     shape::off_chord,
-    solve::{
-        LAST, finish, finish_bending, finish_parametric, improve, replace, restart_all, solve,
-    },
+    solve::{LAST, finish, finish_bending, improve, quicken, replace, restart_all, solve},
     window::{BESIDE, Window, windows},
 };
 
@@ -143,7 +141,8 @@ impl Found<'_> {
                     unsolved.extend(own());
                     continue;
                 };
-                finish_parametric(demands, &mut chain, control);
+                quicken(demands, &mut chain, control);
+                finish(&mut chain, LAST, control);
                 let mut open = certify(demands, &mut chain, control);
                 let last = if open.is_empty() || !thorough {
                     None
@@ -176,6 +175,7 @@ impl Found<'_> {
         if !chain.all_hold() {
             method = solve(demands, &mut chain, true, control).unwrap_or(method);
         }
+        quicken(demands, &mut chain, control);
         finish_bending(&mut chain, control);
         self.open = certify(demands, &mut chain, control);
         let last = fall_back(demands, &mut chain, &mut self.open, control);

@@ -63,13 +63,9 @@ pub(crate) fn solve(
     Some(method)
 }
 
-/// Brings the parametric energy of a feasible chain down to the end.
-pub(crate) fn finish_parametric(
-    demands: &Demands<'_>,
-    chain: &mut Chain,
-    control: &mut Control<'_>,
-) {
-    // Where the curve nearly stops, ∫|Q''|²du does not see how it bends.
+/// Minimises the bending energy of segments of a feasible chain in which the curve nearly stops: there
+/// `∫|Q''|²du` does not see how it bends.
+pub(crate) fn quicken(demands: &Demands<'_>, chain: &mut Chain, control: &mut Control<'_>) {
     for _ in 0..ROUNDS {
         let slow: Vec<usize> = (0..chain.segments.len())
             .filter(|&k| chain.segments[k].energy == Energy::Parametric)
@@ -93,7 +89,6 @@ pub(crate) fn finish_parametric(
             break;
         }
     }
-    finish(chain, LAST, control);
 }
 
 /// Brings the bending energy of a feasible chain down to the end.
