@@ -1,6 +1,7 @@
 """The shape report: what it says, in all its forms, against what sampling finds."""
 
 import json
+import re
 
 import numpy as np
 import pytest
@@ -139,6 +140,40 @@ def test_a_printed_report_names_practical_corners(family, rng):
     other = ss.check_shape(points, ss.PiecewiseBezier(curve.bezier, curve.knots))
     assert str(other).endswith("practically corners: points 2, 6")
     assert "corners" not in str(ss.FairSpline(points).check())
+
+
+@pytest.mark.parametrize("family", [ss.NuSpline, ss.TensionSpline, ss.CatmullRom])
+def test_a_printed_report_names_the_criterion_that_costs_most(family, rng):
+    """Energy at the segments of which the C² cubic violates it, and beside them: by sampling."""
+    named = 0
+    for _ in range(10):
+        points = polygons.random_walk(rng, 12, 3)
+        curve, cubic = family.shape_preserving(points, "chordal"), ss.NuSpline(points)
+        energies = [bending_of_segments(each) for each in (curve, cubic)]
+        costs = {}
+        for criterion in cubic.check().counts():
+            violated = [v.segment for v in cubic.check([criterion]).violations]
+            beside = sorted({j for i in violated for j in (i - 1, i, i + 1) if 0 <= j < 11})
+            costs[criterion] = [sum(energy[beside]) for energy in energies]
+        dearest = max(costs, key=lambda name: costs[name][0] - costs[name][1])
+        own, plain = costs[dearest]
+        lines = [line for line in str(curve.check()).splitlines() if "costs most" in line]
+        assert bool(lines) == (own - plain > 0.01 * sum(energies[1]))
+        if lines:
+            named += 1
+            numbers = [float(text) for text in re.findall(r"\d\.\d+e\d+", lines[0])]
+            assert lines[0].startswith(f"costs most: {dearest} ")
+            assert numbers == pytest.approx([own, plain], rel=0.02)
+    assert named >= 5
+
+
+def bending_of_segments(curve):
+    """Return ∫κ²ds of each segment, by sampling."""
+    first, last = curve.parameters[:-1], curve.parameters[1:]
+    u = first + np.linspace(0, 1, 20001)[:, None] * (last - first)
+    u = 0.5 * (u[1:] + u[:-1])
+    speed = np.linalg.norm(curve(u, 1), axis=-1)
+    return (curve.curvature(u) ** 2 * speed).mean(axis=0) * (last - first)
 
 
 def test_a_long_report_is_printed_without_measures():

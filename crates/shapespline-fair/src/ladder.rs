@@ -253,6 +253,7 @@ fn fall_back(
             for weight in [1.0, 0.1, 0.01] {
                 improve(chain, weight, control);
             }
+            quicken(demands, chain, control);
         }
         let left = if method == Method::Sweeps {
             certify(demands, chain, control)

@@ -115,6 +115,11 @@ impl Demands<'_> {
         }
     }
 
+    /// Whether the sign of `ω` at one end of a segment along the binormal of the other is asked for.
+    pub(crate) fn asks_pair(&self, i: usize) -> bool {
+        self.bend(i) != Bend::Free || self.checker.calls()[i].any(Calls::TURNING_PAIR)
+    }
+
     /// Sign of the torsion asked for, or 0.
     pub(crate) fn torsion(&self, i: usize) -> f64 {
         let calls = self.checker.calls()[i];

@@ -9,12 +9,9 @@
 //! them. (Derived here; of 280 polygons of seven kinds none took more than 27 reductions.)
 
 use glam::DVec3;
-use shapespline_geometry::DataPolygon;
+use shapespline_geometry::{DataPolygon, normalize};
 
-use crate::{
-    element::Node,
-    segment::{Bend, Demands},
-};
+use crate::{element::Node, segment::Demands};
 
 /// How a start is scaled: the tilt of the osculating plane, the handles, and the curvature.
 #[derive(Debug, Clone, Copy)]
@@ -51,29 +48,75 @@ pub(crate) fn start(demands: &Demands<'_>, node: usize, scales: Scales) -> Node 
     let normal = p / sine;
     let limits = sides.into_iter().flatten().map(|i| tilt_limit(demands, i));
     let limit = limits.fold(1.0, f64::min);
-    let e = scales.tilt * 0.1 * alpha.min(beta) * sine * limit;
+    let size = scales.tilt * 0.1 * alpha.min(beta) * sine * limit;
     let [s0, s1] = sides.map(|side| side.map_or(0.0, |i| demands.torsion(i)));
-    let (sum, difference) = (u + v, v - u);
-    let bisector = sum.normalize_or_zero();
-    let across = normal.cross(bisector);
-    let tilted = |[a, b]: [f64; 2]| {
-        bisector * ((a + b) / sum.length().max(1e-6))
-            + across * ((b - a) / difference.length().max(1e-300))
-    };
-    let mut x = tilted([e * s0, e * s1]);
-    match demands.constraints.direction(node) {
-        None => t = (t - normal * x.dot(t)).normalize(),
-        Some(direction) => {
-            t = direction;
-            x = tilted(tilts(t, [u, v], normal, [s0, s1], e));
+    let x = match demands.constraints.direction(node) {
+        None => {
+            let x = tilt(demands, node, t, [u, v]) * size;
+            t = (t - normal * x.dot(t)).normalize();
+            x
         }
-    }
+        Some(direction) => {
+            let narrow = sides.into_iter().flatten().map(|i| cosine_limit(demands, i));
+            let e = size * narrow.fold(1.0, f64::min);
+            t = direction;
+            let (sum, difference) = (u + v, v - u);
+            let bisector = sum.normalize_or_zero();
+            let [a, b] = tilts(t, [u, v], normal, [s0, s1], e);
+            bisector * ((a + b) / sum.length().max(1e-6))
+                + normal.cross(bisector) * ((b - a) / difference.length().max(1e-300))
+        }
+    };
     let r = (normal + x).cross(t).normalize();
     let natural = 2.0 * sine / (h0 + h1);
     Node {
         q: t * (scales.handle * speed),
         r: r * (scales.handle * scales.curvature * natural * speed * speed),
     }
+}
+
+/// Binormals of which the cosine of the angle is smaller than this hardly say on which side of the one the
+/// osculating plane at the other lies: the tilt has to.
+const STEEP: f64 = 0.3;
+
+/// The direction, in the plane of the two chords at a node, in which the osculating plane's normal leaves their
+/// binormal: towards all sides that torsion asks for and, where the binormals at the other ends are nearly
+/// perpendicular, that these ask for. At most one long: shorter where they let it lean less.
+fn tilt(demands: &Demands<'_>, node: usize, t: DVec3, [u, v]: [DVec3; 2]) -> DVec3 {
+    let polygon = demands.checker.polygon();
+    let normal = normalize(u.cross(v));
+    let sides = sides(polygon, node);
+    let torsions =
+        [0, 1].map(|at| sides[at].map_or(DVec3::ZERO, |i| [u, v][at] * demands.torsion(i)));
+    let own: Vec<DVec3> = torsions.into_iter().filter(|t| *t != DVec3::ZERO).collect();
+    // The cosine, and where a lean keeps `B` and `t × L` on the side of the other binormal.
+    let mut pairs = Vec::new();
+    for (at, i) in sides.into_iter().enumerate() {
+        let Some(i) = i.filter(|&i| demands.asks_pair(i)) else { continue };
+        let [p, q] = polygon.binormals(i);
+        let other = normalize(if at == 0 { p } else { q });
+        let cosine = normal.dot(other);
+        let other = other * cosine.signum();
+        let beside = if at == 0 { u.cross(normal) } else { normal.cross(v) };
+        pairs.push((cosine.abs(), other - normal * cosine.abs()));
+        pairs.push((cosine.abs(), t * -beside.dot(other)));
+    }
+    let steep = pairs.iter().filter(|pair| pair.0 < STEEP).map(|pair| pair.1);
+    let all: Vec<DVec3> = own.iter().copied().chain(steep).collect();
+    let direction = [all, own].iter().find_map(|asked| towards(asked)).unwrap_or(DVec3::ZERO);
+    let room = |&(cosine, side): &(f64, DVec3)| cosine / (-side.dot(direction)).max(cosine);
+    direction * pairs.iter().map(room).fold(1.0, f64::min)
+}
+
+/// The unit vector whose least product with some coplanar vectors is largest, if that is positive: it is equally
+/// far from two of them, or one of them.
+fn towards(vectors: &[DVec3]) -> Option<DVec3> {
+    let units: Vec<DVec3> = vectors.iter().map(|v| v.normalize_or_zero()).collect();
+    let candidates = (0..units.len()).flat_map(|i| (0..=i).map(move |j| (i, j)));
+    let least = |d: DVec3| units.iter().map(|u| u.dot(d)).fold(f64::INFINITY, f64::min);
+    let candidates = candidates.map(|(i, j)| (units[i] + units[j]).normalize_or_zero());
+    let best = candidates.max_by(|a, b| least(*a).total_cmp(&least(*b)))?;
+    (least(best) > 1e-3).then_some(best)
 }
 
 /// `[B·u, B·v]` of an osculating plane that holds a given tangent, with the signs asked for as far as can be:
@@ -113,13 +156,16 @@ fn tilt_limit(demands: &Demands<'_>, i: usize) -> f64 {
     if demands.torsion(i) != 0.0 {
         limit = limit.min(demands.gamma(i).abs() / sines.max(1e-300));
     }
-    if demands.bend(i) != Bend::Free {
-        limit = limit.min(p.dot(q).abs() / sines.max(1e-300));
-    }
     if demands.is_coplanar(i) {
         limit = limit.min(demands.checker.tolerances().coplanarity);
     }
     limit
+}
+
+/// The cosine of the angle between the binormals of a segment, where that matters.
+fn cosine_limit(demands: &Demands<'_>, i: usize) -> f64 {
+    let [p, q] = demands.checker.polygon().binormals(i);
+    if demands.asks_pair(i) { p.dot(q).abs() / (p.length() * q.length()).max(1e-300) } else { 1.0 }
 }
 
 #[cfg(test)]

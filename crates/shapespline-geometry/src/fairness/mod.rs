@@ -57,6 +57,8 @@ pub struct Fairness {
     pub length: f64,
     /// `L ∫κ² ds`: infinite at corners and cusps.
     pub bending: f64,
+    /// What each piece adds to it.
+    pub bending_of_pieces: Vec<f64>,
     /// `L³ ∫(κ'² + κ²τ²) ds`, derivatives by arc length (in the plane `κ'²`): zero for lines and circles,
     /// infinite where the curvature vector jumps.
     pub variation: f64,
@@ -174,6 +176,7 @@ impl Summary {
         let fairness = Fairness {
             length: 0.0,
             bending: 0.0,
+            bending_of_pieces: pieces.iter().map(|piece| piece.integrals[1]).collect(),
             variation: 0.0,
             max_curvature: 0.0,
             max_curvature_at: Place { piece: 0, t: 0.0 },
@@ -290,12 +293,13 @@ impl Fairness {
     /// The measures in units of the curve, from those in units of `unit`.
     fn in_units_of(mut self, unit: f64) -> Self {
         let length = self.length;
+        let of_pieces = self.bending_of_pieces.iter_mut().map(|bending| (bending, length));
         // Infinite stays infinite, also where all points are one.
-        for (measure, power) in [
+        for (measure, power) in of_pieces.chain([
             (&mut self.bending, length),
             (&mut self.variation, length.powi(3)),
             (&mut self.max_curvature_jump, length),
-        ] {
+        ]) {
             if measure.is_finite() {
                 *measure *= power;
             }

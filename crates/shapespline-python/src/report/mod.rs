@@ -1,6 +1,7 @@
 //! The shape report for Python: what was found, and what is made of it when asked for.
 //!
-//! [`record`] is one line of it, [`subject`] what it is about, [`export`] its other forms.
+//! [`record`] is one line of it, [`subject`] what it is about, [`comparison`] how fair the curve is, [`export`] its
+//! other forms.
 
 use std::sync::OnceLock;
 
@@ -19,9 +20,12 @@ use crate::{
     work::{GoOn, interrupted, interruptible},
 };
 
+mod comparison;
 mod export;
 mod record;
 mod subject;
+
+use comparison::{Comparison, Cost};
 
 pub(crate) use record::ShapeRecord;
 pub(crate) use subject::Subject;
@@ -37,8 +41,8 @@ const MEASURED: usize = 1000;
 /// Holds the violations, what stays open, and counts; the records of all segments and the notes on
 /// nodes are made when asked for. Prints as a table, with the energy ∫κ²ds and the largest curvature of
 /// the curve, if it has at most 1000 segments, beside those of the C² cubic spline with the same parameters
-/// and ends; and the points that are practically corners, where curvature times chord exceeds 100. Immutable
-/// and picklable.
+/// and ends; the criterion that costs most energy, where the C² cubic violates it; and the points that are
+/// practically corners, where curvature times chord exceeds 100. Immutable and picklable.
 ///
 /// Examples
 /// --------
@@ -257,15 +261,27 @@ impl ShapeReport {
         if segments > MEASURED {
             return Ok(text);
         }
-        let measure = |go_on: GoOn<'_>| self.subject.fairness(go_on);
-        if let Some([own, cubic]) = interruptible(py, segments, measure)? {
+        let compare = |go_on: GoOn<'_>| Comparison::of(&self.subject, go_on);
+        if let Some(found) = interruptible(py, segments, compare)? {
+            let [own, cubic] = [&found.own_fairness, &found.cubic_fairness];
             let line = |name: &str, measure: fn(&Fairness) -> f64| {
-                format!("\n{name:<17}{:>10.3e}{:>12.3e}", measure(&own), measure(&cubic))
+                format!("\n{name:<17}{:>10.3e}{:>12.3e}", measure(own), measure(cubic))
             };
             text += &format!("\n{:<17}{:>10}{:>12}", "fairness", "curve", "C² cubic");
             text += &line("energy ∫κ²ds", |found| found.bending / found.length);
             text += &line("max. curvature", |found| found.max_curvature);
-            let sharp = self.subject.sharp_points(&own);
+            if let Some(Cost { criterion, segments, own, cubic }) = found.costliest(self.asked) {
+                let place = if segments == 1 {
+                    "the segment where the C² cubic violates it".to_owned()
+                } else {
+                    format!("the {segments} segments where the C² cubic violates it")
+                };
+                let name = criterion.name();
+                text += &format!(
+                    "\ncosts most: {name} (energy {own:.3e} instead of {cubic:.3e} around {place})"
+                );
+            }
+            let sharp = found.sharp_points();
             if !sharp.is_empty() {
                 let few: Vec<String> = sharp.iter().take(8).map(usize::to_string).collect();
                 let more = if sharp.len() > few.len() { ", …" } else { "" };

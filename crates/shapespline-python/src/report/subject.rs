@@ -6,11 +6,7 @@ use shapespline::{
     criteria::{
         Checker, Criterion, CurveChecker, CurveError, INTERPOLATION, Notes, Record, ShapeReport,
     },
-    geometry::{
-        DVec3, DataPolygon, Fairness, InputMap, PiecewiseBezier, Place, fairness_with, length,
-    },
-    nu::NuSpline,
-    search::{Interpolant, Tension},
+    geometry::{DVec3, DataPolygon, InputMap, PiecewiseBezier},
 };
 
 use crate::{
@@ -18,10 +14,6 @@ use crate::{
     curve::{Fitted, in_input},
     work::GoOn,
 };
-
-/// Curvature times chord from which on a bend is practically a corner: it turns within a hundredth of the
-/// chord.
-const SHARP: f64 = 100.0;
 
 /// A curve beside the points that it has to follow.
 #[derive(Clone)]
@@ -102,64 +94,6 @@ impl Subject {
             Self::Own(curve) => curve.count() - 1,
             Self::Other { polygon, .. } => polygon.segments(),
         }
-    }
-
-    /// The fairness of the curve, and that of the C² cubic spline with the same points, parameters and ends;
-    /// none where f64 cannot hold that, and after Ctrl-C.
-    pub(crate) fn fairness(&self, go_on: GoOn<'_>) -> Option<[Fairness; 2]> {
-        let cubic = |polygon: DataPolygon| {
-            let cubic = NuSpline::new(polygon, Tension::Uniform(0.0)).ok()?;
-            fairness_with(&PiecewiseBezier::from(cubic.curve()), go_on)
-        };
-        match self {
-            Self::Own(curve) => {
-                let own = fairness_with(&PiecewiseBezier::from(curve.cubic()), go_on)?;
-                Some([own, cubic(curve.polygon().ok()?)?])
-            }
-            Self::Other { polygon, curve, .. } => {
-                Some([fairness_with(curve, go_on)?, cubic(polygon.as_ref().clone())?])
-            }
-        }
-    }
-
-    /// The points, as indices of the input, next to which the curve turns in a small part of a chord:
-    /// practically corners. `found` is its fairness.
-    pub(crate) fn sharp_points(&self, found: &Fairness) -> Vec<usize> {
-        let own;
-        let (polygon, map) = match self {
-            Self::Own(curve) => match curve.polygon() {
-                Ok(polygon) => {
-                    own = polygon;
-                    (&own, &curve.map)
-                }
-                Err(_) => return Vec::new(),
-            },
-            Self::Other { polygon, map, .. } => (polygon.as_ref(), map.as_ref()),
-        };
-        let parameter = |place: Place| match self {
-            Self::Own(curve) => curve.path().parameter(place.piece, place.t),
-            Self::Other { curve, .. } => {
-                let [from, to] = [0, 1].map(|k| curve.breaks()[place.piece + k]);
-                from + place.t * (to - from)
-            }
-        };
-        let u = polygon.parameters();
-        let near = |place: Place| {
-            let at = parameter(place);
-            let segment = u.partition_point(|&u| u <= at).clamp(1, u.len() - 1) - 1;
-            let node = segment + usize::from(at - u[segment] > u[segment + 1] - at);
-            (node, length(polygon.chord(segment)))
-        };
-        let peaks = found.extrema.iter().map(|peak| (peak.place, peak.curvature.abs()));
-        let peaks = peaks.chain([(found.max_curvature_at, found.max_curvature)]);
-        let sharp = peaks.filter_map(|(place, curvature)| {
-            let (node, chord) = near(place);
-            (curvature * chord > SHARP).then(|| map.node(node))
-        });
-        let mut points: Vec<usize> = sharp.collect();
-        points.sort_unstable();
-        points.dedup();
-        points
     }
 
     /// Runs work with the checker of the subject.
