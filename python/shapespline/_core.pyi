@@ -99,6 +99,7 @@ class _Report(TypedDict):
     segments: list[_Record]
     violations: list[_Record]
     undecided: list[_Undecided]
+    straight: list[int]
 
 @disjoint_base
 class SpaceCurve:
@@ -176,9 +177,12 @@ class FairSpline(SpaceCurve):
         corners: Sequence[int] | float | None = None,
         tangents: Mapping[int, ArrayLike] | None = None,
         max_deviation: float | None = None,
+        straight: bool = False,
     ) -> FairSpline: ...
     @property
     def corners(self) -> tuple[int, ...]: ...
+    @property
+    def straight(self) -> tuple[int, ...]: ...
     @property
     def energy(self) -> _Energy: ...
     @property
@@ -442,6 +446,8 @@ class ShapeReport:
     @property
     def undecided(self) -> list[UndecidedRecord]: ...
     @property
+    def straight(self) -> tuple[int, ...]: ...
+    @property
     def nodes(self) -> list[NodeRecord]: ...
     @property
     def oscillations(self) -> list[OscillationRecord]: ...
@@ -514,6 +520,7 @@ def _fit_many(
     tension: float,
     tangent_scale: float,
     energy: str,
+    straight: bool,
 ) -> tuple[list[SpaceCurve | None], dict[int, Exception]]: ...
 def _check_shape(
     points: ArrayLike,

@@ -125,6 +125,7 @@ def fit_many(
     tolerance: float | None = None,
     max_iterations: int | None = None,
     energy: _Energy | None = None,
+    straight: bool | None = None,
     safety: float | None = None,
     continuity: _Continuity | None = None,
     directions: _Directions | None = None,
@@ -167,6 +168,8 @@ def fit_many(
     max_iterations : int, optional
         As for `FairSpline`, ``NuSpline.shape_preserving`` and ``TensionSpline.shape_preserving``.
     energy : {"parametric", "bending"}, optional
+        As for `FairSpline`.
+    straight : bool, optional
         As for `FairSpline`.
     strategy, step
         As for ``NuSpline.shape_preserving`` and ``TensionSpline.shape_preserving``.
@@ -228,6 +231,7 @@ def fit_many(
         "tolerance": tolerance,
         "max_iterations": max_iterations,
         "energy": energy,
+        "straight": straight,
         "safety": safety,
         "continuity": continuity,
         "directions": directions,

@@ -57,7 +57,7 @@ METHODS: Mapping[str, Method] = MappingProxyType(
     {
         "fair": Method(
             FairSpline,
-            {**_CHECK, "energy": "parametric", "max_iterations": None},
+            {**_CHECK, "energy": "parametric", "max_iterations": None, "straight": False},
             {},
             alone={"corners": None, "tangents": None, "max_deviation": None},
         ),

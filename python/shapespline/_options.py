@@ -215,6 +215,12 @@ def add_fit_options(parser: argparse.ArgumentParser, methods: Iterable[str]) -> 
         help="fair: how far at most the curve lies from the chords, in the units of the points",
     )
     curve.add_argument(
+        "--straight",
+        action="store_true",
+        default=None,
+        help="fair: exactly straight along collinear runs of points",
+    )
+    curve.add_argument(
         "--continuity", choices=["C1", "G1"], help="catmull-rom: one handle scale per point, or two"
     )
     curve.add_argument(

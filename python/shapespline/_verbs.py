@@ -49,6 +49,7 @@ def fit(
     corners: Sequence[int] | float | None = ...,
     tangents: Mapping[int, ArrayLike] | None = ...,
     max_deviation: float | None = ...,
+    straight: bool | None = ...,
 ) -> FairSpline: ...
 @overload
 def fit(
@@ -122,6 +123,7 @@ def fit(
     corners: Sequence[int] | float | None = None,
     tangents: Mapping[int, ArrayLike] | None = None,
     max_deviation: float | None = None,
+    straight: bool | None = None,
     strategy: _Strategy | None = None,
     step: float | None = None,
     safety: float | None = None,
@@ -151,7 +153,7 @@ def fit(
         Method ``"fair"``, ``"nu"`` or ``"tension"``: the largest number of iterations.
     energy : {"parametric", "bending"}, optional
         Method ``"fair"``: as for `FairSpline`.
-    corners, tangents, max_deviation
+    corners, tangents, max_deviation, straight
         Method ``"fair"``: as for `FairSpline`.
     strategy, step
         Method ``"nu"`` or ``"tension"``: as for ``NuSpline.shape_preserving`` and
@@ -209,6 +211,7 @@ def fit(
         "corners": corners,
         "tangents": tangents,
         "max_deviation": max_deviation,
+        "straight": straight,
         "strategy": strategy,
         "step": step,
         "safety": safety,

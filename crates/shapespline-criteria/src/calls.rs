@@ -69,6 +69,10 @@ impl Calls {
     pub const REGULAR: Self = Self(1 << 17);
     /// With it: an end leg that is rounding beside its chord counts as none. Tension may leave so little.
     pub(crate) const LEGS: Self = Self(1 << 18);
+    /// By construction the curve is straight before the segment's first node, or after its last one: `ω`
+    /// vanishes there, and counts by its sign beside. Asks for nothing.
+    pub(crate) const STRAIGHT_BEFORE: Self = Self(1 << 20);
+    pub(crate) const STRAIGHT_AFTER: Self = Self(1 << 21);
     /// The polygon doubles back on itself at a node of the segment. Asks for nothing.
     const DOUBLING_BACK: Self = Self(1 << 19);
 

@@ -10,6 +10,7 @@ use crate::{
     WindowChecker,
     faults::{Cones, Situation, faults},
     margin, regular,
+    resolution::is_straight,
     rounding::Lean,
     stretch::far,
 };
@@ -30,6 +31,8 @@ pub struct Checker<'a> {
     local: StretchChecker<'a>,
     criteria: Criteria,
     calls: Vec<Calls>,
+    /// Segments on which the curve is straight by construction.
+    straight: Vec<usize>,
 }
 
 impl<'a> Checker<'a> {
@@ -37,14 +40,13 @@ impl<'a> Checker<'a> {
     #[must_use]
     pub fn new(polygon: &'a DataPolygon, criteria: Criteria, tolerances: Tolerances) -> Self {
         let local = StretchChecker::new(polygon, criteria, tolerances);
-        Self { local, criteria, calls: local.all_calls() }
+        Self { local, criteria, calls: local.all_calls(), straight: Vec::new() }
     }
 
     /// Asks for nothing at some nodes, as at ends of zero curvature: where the curve is to have corners.
     #[must_use]
     pub fn with_free_nodes(mut self, nodes: &[usize]) -> Self {
         let n = self.calls.len();
-        let regular = Calls::of(Criterion::Regular);
         for &node in nodes {
             let at = |k: isize| {
                 let segment = node as isize + k;
@@ -58,13 +60,56 @@ impl<'a> Checker<'a> {
                 (at(1), Calls::TURNING_BEFORE),
             ];
             for (segment, calls) in touched {
-                let Some(segment) = segment else { continue };
-                let left = self.calls[segment].without(calls);
-                let implied = left.any(Calls::IMPLY_REGULAR) || left.any(regular);
-                self.calls[segment] = if implied { left } else { left.and(Calls::REGULAR) };
+                if let Some(segment) = segment {
+                    self.leave_out(segment, calls);
+                }
             }
         }
         self
+    }
+
+    /// Takes calls from a segment, which then has to be regular in any case.
+    fn leave_out(&mut self, segment: usize, calls: Calls) {
+        let left = self.calls[segment].without(calls);
+        let regular = Calls::of(Criterion::Regular);
+        let implied = left.any(Calls::IMPLY_REGULAR) || left.any(regular);
+        self.calls[segment] = if implied { left } else { left.and(Calls::REGULAR) };
+    }
+
+    /// Takes some segments (ascending) to be straight by construction: nothing that turns is asked of them,
+    /// and beside them, but for free nodes, turning and torsion may be zero where they meet.
+    #[must_use]
+    pub fn with_straight_segments(mut self, segments: &[usize], free: &[usize]) -> Self {
+        let (n, closed) = (self.calls.len(), self.polygon().is_closed());
+        let is_straight = |i: usize| segments.binary_search(&i).is_ok();
+        for &i in segments {
+            self.leave_out(i, Calls::of(Criterion::Turning));
+            let before = if i > 0 { Some(i - 1) } else { closed.then_some(n - 1) };
+            let after = if i + 1 < n { Some(i + 1) } else { closed.then_some(0) };
+            let nodes = [i, if closed { (i + 1) % n } else { i + 1 }];
+            let flags = [Calls::STRAIGHT_AFTER, Calls::STRAIGHT_BEFORE];
+            for ((beside, node), flag) in [before, after].into_iter().zip(nodes).zip(flags) {
+                if let Some(k) = beside.filter(|&k| !is_straight(k) && !free.contains(&node)) {
+                    self.calls[k] = self.calls[k].and(flag);
+                }
+            }
+        }
+        self.straight = segments.to_vec();
+        self
+    }
+
+    /// Whether the polygon goes straight on at a node, as far as tolerance and resolution tell.
+    #[must_use]
+    pub fn goes_straight_on(&self, node: usize) -> bool {
+        let (polygon, tolerances) = (self.polygon(), self.tolerances());
+        let n = polygon.segments();
+        let [u, v] = polygon.directions_at(node);
+        let inner = polygon.is_closed() || (0 < node && node < n);
+        let hidden = || {
+            let [before, after] = [(node + n - 1) % n, node % n].map(|i| polygon.chord(i));
+            inner && is_straight(before, after, tolerances.resolution)
+        };
+        u.dot(v) > 0.0 && (u.cross(v).length() <= tolerances.zero || hidden())
     }
 
     /// The polygon.
@@ -238,7 +283,8 @@ impl<'a> Checker<'a> {
     /// The report that says how often each criterion applies, and nothing else yet.
     pub(crate) fn blank_report(&self) -> ShapeReport {
         let n = self.calls.len();
-        ShapeReport::clean(n, self.criteria, self.applicable(0..n))
+        let clean = ShapeReport::clean(n, self.criteria, self.applicable(0..n));
+        ShapeReport { straight: self.straight.clone(), ..clean }
     }
 
     /// How many of the segments each criterion applies to, in the order of [`Criterion::ALL`].

@@ -58,6 +58,8 @@ pub struct ShapeReport {
     pub violations: Vec<Record>,
     /// What stays open, ascending by segment.
     pub undecided: Vec<Undecided>,
+    /// Segments that are straight by construction: at their ends turning and torsion may be zero.
+    pub straight: Vec<usize>,
 }
 
 impl ShapeReport {
@@ -70,7 +72,8 @@ impl ShapeReport {
         applicable: [usize; Criterion::COUNT],
     ) -> Self {
         let counts = applicable.map(|applicable| Count { violated: 0, applicable });
-        Self { segments, criteria, counts, violations: Vec::new(), undecided: Vec::new() }
+        let (violations, undecided, straight) = (Vec::new(), Vec::new(), Vec::new());
+        Self { segments, criteria, counts, violations, undecided, straight }
     }
 
     /// Whether no criterion that applies is violated. What rounding hides may still be
@@ -117,6 +120,9 @@ impl std::fmt::Display for ShapeReport {
         for criterion in self.listed().iter() {
             let count = self.count(criterion);
             writeln!(f, "{criterion:<17}{:>10}{:>12}", count.violated, count.applicable)?;
+        }
+        if !self.straight.is_empty() {
+            writeln!(f, "straight on {} segments, by construction", self.straight.len())?;
         }
         let more = |f: &mut std::fmt::Formatter<'_>, n: usize| match n.checked_sub(LISTED) {
             Some(rest) if rest > 0 => writeln!(f, "… and {rest} more"),

@@ -26,6 +26,27 @@ pub(crate) enum Freedom {
     Held,
     /// The second derivative alone: given tangents.
     TangentHeld,
+    /// Both derivatives along a unit vector.
+    Straight(DVec3),
+    /// The second derivative along a unit vector: a given tangent at the end of a straight run.
+    StraightHeld(DVec3),
+}
+
+impl Freedom {
+    /// Whether a given tangent is held.
+    pub(crate) fn holds_tangent(self) -> bool {
+        matches!(self, Self::TangentHeld | Self::StraightHeld(_))
+    }
+
+    /// The line that the first and that the second derivative keep to.
+    pub(crate) fn lines(self) -> [Option<DVec3>; 2] {
+        match self {
+            Self::Free | Self::Held | Self::TangentHeld => [None, None],
+            Self::Along(t) => [Some(t), None],
+            Self::Straight(t) => [Some(t), Some(t)],
+            Self::StraightHeld(t) => [None, Some(t)],
+        }
+    }
 }
 
 /// Segments in a row, the nodes between them, and the conditions on them.

@@ -7,7 +7,7 @@ use shapespline_geometry::{
     Boundary, DVec3, DataPolygon, InputError, Parametrization, length, normalize,
 };
 
-use crate::{element::TAU, shape::off_chord, window::is_given};
+use crate::{element::TAU, runs::Runs, shape::off_chord, window::is_given};
 
 /// What else the curve has to do.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -22,6 +22,9 @@ pub struct Constraints {
     /// How far, at most, the curve's control points lie from the chord of their segment, and with them the
     /// curve.
     pub max_deviation: Option<f64>,
+    /// Whether the curve is exactly straight along collinear runs. At their ends its curvature is zero and
+    /// its tangent lies along the run; a turn in which two runs meet has to be a corner.
+    pub straight: bool,
 }
 
 /// Corners are where the tangent may jump: two open ends that meet.
@@ -76,10 +79,18 @@ impl Constraints {
     /// # Errors
     /// A direction at a point that does not lie between the chords there, where turning is asked for; a distance
     /// from the chords that is less than a given end tangent needs.
-    pub(crate) fn refuse_conflicts(&self, checker: &Checker<'_>) -> Result<(), InputError> {
+    pub(crate) fn refuse_conflicts(
+        &self,
+        checker: &Checker<'_>,
+        runs: &Runs,
+    ) -> Result<(), InputError> {
         let (polygon, calls) = (checker.polygon(), checker.calls());
         let n = polygon.segments();
         for &(node, vector) in &self.tangents {
+            if let Some(line) = runs.line(node) {
+                refuse_off_line(node, normalize(vector), line)?;
+                continue;
+            }
             let [before, after] = [(node + n - 1) % n, node % n].map(|i| calls[i]);
             if !before.any(Calls::TURNING_AT_END) && !after.any(Calls::TURNING_AT_START) {
                 continue;
@@ -111,9 +122,17 @@ impl Constraints {
         Ok(())
     }
 
+    /// The collinear runs that the curve goes through straight: none unless that is asked.
+    ///
+    /// # Errors
+    /// Two runs that meet in a turn, or a given end tangent off a run.
+    pub(crate) fn runs(&self, checker: &Checker<'_>) -> Result<Runs, InputError> {
+        if self.straight { Runs::of(checker, &self.corners) } else { Ok(Runs::default()) }
+    }
+
     /// Whether nothing is asked.
     pub(crate) fn is_empty(&self) -> bool {
-        self.corners.is_empty() && self.tangents.is_empty() && self.max_deviation.is_none()
+        *self == Self::default()
     }
 
     /// The parts between corners, in order along the data: the whole where there are none.
@@ -134,6 +153,16 @@ impl Constraints {
         let at = self.tangents.binary_search_by_key(&node, |tangent| tangent.0).ok()?;
         Some(normalize(self.tangents[at].1))
     }
+}
+
+/// Refuses a direction that leads off the line which the curve keeps to at its point.
+fn refuse_off_line(node: usize, direction: DVec3, line: DVec3) -> Result<(), InputError> {
+    let sine = direction.cross(line).length();
+    if sine <= 1e-9 && direction.dot(line) > 0.0 {
+        return Ok(());
+    }
+    let allowed = "along the straight run at its point (the sine between them 0)";
+    Err(InputError::OutOfRange { argument: "tangents", index: node, value: sine, allowed })
 }
 
 /// The data between two corners.

@@ -155,7 +155,7 @@ mod tests {
     use shapespline_geometry::{Boundary, Parametrization};
 
     use super::*;
-    use crate::{Constraints, energy::parametric, export::Pieces, segment::Demands};
+    use crate::{Constraints, energy::parametric, export::Pieces, runs::Runs, segment::Demands};
 
     /// Long enough for all threads.
     #[test]
@@ -173,7 +173,8 @@ mod tests {
                 let plain = Plain::of(&polygon).unwrap();
                 let checker = Checker::new(&polygon, Criteria::NONE, Tolerances::default());
                 let (units, constraints) = (Units::of(&polygon), &Constraints::default());
-                let demands = Demands { checker: &checker, units, constraints };
+                let runs = &Runs::default();
+                let demands = Demands { checker: &checker, units, constraints, runs };
                 let legs = |i: usize| {
                     let ends = [i, (i + 1) % polygon.nodes()].map(|j| plain.node(j, units));
                     demands.span(i).legs(ends[0], ends[1])

@@ -72,9 +72,11 @@ impl Found<'_> {
         let faults = checker.all_faults(|i| self.plain.legs(i));
         let mut failing: Vec<usize> = faults.into_iter().map(|(i, _)| i).collect();
         let constraints = demands.constraints;
-        if constraints.max_deviation.is_some() || !constraints.tangents.is_empty() {
+        let straight = !demands.runs.segments.is_empty();
+        if constraints.max_deviation.is_some() || !constraints.tangents.is_empty() || straight {
             let strays = |&i: &usize| {
                 self.leaves_direction(demands, i)
+                    || self.leaves_line(demands, i)
                     || deviates(demands, i, &self.pieces(demands, i).parts(ends_of(demands, i)))
             };
             failing.extend((0..checker.polygon().segments()).filter(strays));
@@ -111,6 +113,15 @@ impl Found<'_> {
     pub(crate) fn plain_nodes(&self, demands: &Demands<'_>, i: usize) -> [Node; 2] {
         let count = demands.checker.polygon().nodes();
         [i, (i + 1) % count].map(|node| self.plain.node(node, demands.units))
+    }
+
+    /// Whether either derivative at a node of a segment leads off the line that the curve has to keep to.
+    fn leaves_line(&self, demands: &Demands<'_>, i: usize) -> bool {
+        let nodes = [i, (i + 1) % demands.checker.polygon().nodes()];
+        nodes.into_iter().zip(self.nodes(demands, i)).any(|(node, Node { q, r })| {
+            let off = |v: DVec3, t: DVec3| v.cross(t).length() > 1e-12 * v.length();
+            demands.runs.line(node).is_some_and(|t| off(q, t) || off(r, t) || !(q.dot(t) > 0.0))
+        })
     }
 
     /// The pieces of a segment.

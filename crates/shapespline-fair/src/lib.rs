@@ -57,6 +57,7 @@ mod newton;
 mod options;
 mod outcome;
 mod rows;
+mod runs;
 mod segment;
 mod shape;
 mod solve;

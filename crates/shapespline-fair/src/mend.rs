@@ -181,8 +181,8 @@ pub(crate) fn set_start(demands: &Demands<'_>, chain: &mut Chain, j: usize, scal
     let total = demands.checker.polygon().nodes();
     let start = start(demands, (chain.first + j) % total, scales);
     match chain.freedom[j] {
-        Freedom::Free | Freedom::Along(_) => chain.nodes[j] = start,
-        Freedom::TangentHeld => chain.nodes[j].r = start.r,
+        Freedom::Free | Freedom::Along(_) | Freedom::Straight(_) => chain.nodes[j] = start,
+        Freedom::TangentHeld | Freedom::StraightHeld(_) => chain.nodes[j].r = start.r,
         Freedom::Held => {}
     }
 }

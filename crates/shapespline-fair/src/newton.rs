@@ -154,8 +154,10 @@ impl Chain {
             w.direction.clear();
             w.direction.extend(w.right.iter().map(node));
             for (step, freedom) in w.direction.iter_mut().zip(&self.freedom) {
-                if let Freedom::Along(t) = freedom {
-                    step.q = *t * step.q.dot(*t);
+                for (v, line) in [&mut step.q, &mut step.r].into_iter().zip(freedom.lines()) {
+                    if let Some(t) = line {
+                        *v = t * v.dot(t);
+                    }
                 }
             }
             let decrement = self.decrement(w);
@@ -262,9 +264,9 @@ impl Chain {
     /// Whether a coordinate of a node may not move.
     fn is_fixed(&self, node: usize, i: usize) -> bool {
         let held = match self.freedom[node] {
-            Freedom::Free | Freedom::Along(_) => false,
+            Freedom::Free | Freedom::Along(_) | Freedom::Straight(_) => false,
             Freedom::Held => true,
-            Freedom::TangentHeld => i < 3,
+            Freedom::TangentHeld | Freedom::StraightHeld(_) => i < 3,
         };
         held || (self.segments[0].planar && i % 3 == 2)
     }
@@ -278,9 +280,10 @@ impl Chain {
                 hessian[i] = [0.0; 12];
                 hessian.iter_mut().for_each(|row| row[i] = 0.0);
             }
-            if let Freedom::Along(t) = self.freedom[node] {
-                let (t, from) = (t.to_array(), 6 * side);
-                gradient[2 * side] = DVec3::from(t) * gradient[2 * side].dot(DVec3::from(t));
+            for (k, line) in self.freedom[node].lines().into_iter().enumerate() {
+                let Some(t) = line else { continue };
+                let (t, from, own) = (t.to_array(), 6 * side + 3 * k, 2 * side + k);
+                gradient[own] = DVec3::from(t) * gradient[own].dot(DVec3::from(t));
                 let along = |v: [f64; 3]| t.map(|x| x * (v[0] * t[0] + v[1] * t[1] + v[2] * t[2]));
                 for row in hessian.iter_mut() {
                     let v = along([row[from], row[from + 1], row[from + 2]]);

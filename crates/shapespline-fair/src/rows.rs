@@ -116,7 +116,8 @@ pub(crate) fn best_change(segment: &Segment, d: &Legs) -> usize {
     // The middle piece where it is a tie.
     let mut best = 1;
     for change in [0, 2] {
-        if scores[change] > scores[best] {
+        // Where ω begins with zero it has to leave it on its own side.
+        if scores[change] > scores[best] && !segment.straight[change / 2] {
             best = change;
         }
     }
@@ -131,14 +132,17 @@ pub(crate) fn rows(segment: &Segment, change: usize, rules: &Rules, out: &mut Ve
         let least = segment.sines[0].min(segment.sines[1]);
         let sizes = [segment.sines[0], least, least, segment.sines[1]];
         for normal in 0..normals {
-            for (at, (sign, size)) in signs.into_iter().zip(sizes).enumerate() {
+            let ends = [segment.straight[0], false, false, segment.straight[1]];
+            let breaks = signs.into_iter().zip(sizes).enumerate();
+            for (at, (sign, size)) in breaks.filter(|&(at, _)| !ends[at]) {
                 let (piece, coefficient) = if at < 3 { (at as u8, 0) } else { (2, 2) };
                 let kind = Kind::Omega { piece, coefficient, normal };
                 out.push(Row { kind, factor: sign / size });
             }
             for piece in 0..3 {
                 if signs[piece] == signs[piece + 1] {
-                    let kind = if rules.exact_middles {
+                    let exact = rules.exact_middles && !ends[piece] && !ends[piece + 1];
+                    let kind = if exact {
                         Kind::Middle { piece: piece as u8, normal }
                     } else {
                         Kind::Omega { piece: piece as u8, coefficient: 1, normal }
@@ -151,7 +155,7 @@ pub(crate) fn rows(segment: &Segment, change: usize, rules: &Rules, out: &mut Ve
     for end in 0..2u8 {
         let at = end as usize;
         if segment.turns[at] {
-            if segment.bend == Bend::Free {
+            if segment.bend == Bend::Free && !segment.straight[at] {
                 // Neither convexity nor inflection says how the curve turns here.
                 let kind = Kind::Turn { end, normal: end };
                 out.push(Row { kind, factor: 1.0 / segment.sines[at] });
@@ -165,7 +169,9 @@ pub(crate) fn rows(segment: &Segment, change: usize, rules: &Rules, out: &mut Ve
     }
     if segment.torsion != 0.0 {
         let unit = segment.torsion / (0.1 * segment.gamma.abs());
-        for (piece, size) in [1.5 * TAU, 3.0 / (T * T), 1.5 * TAU].into_iter().enumerate() {
+        let flat = [segment.straight[0], false, segment.straight[1]];
+        let sizes = [1.5 * TAU, 3.0 / (T * T), 1.5 * TAU];
+        for (piece, size) in sizes.into_iter().enumerate().filter(|&(piece, _)| !flat[piece]) {
             let kind = Kind::Twist { piece: piece as u8 };
             out.push(Row { kind, factor: unit / size });
         }
@@ -193,7 +199,11 @@ fn cones(segment: &Segment, rules: &Rules, out: &mut Vec<Row>) {
         let ranges: &[[f64; 2]] =
             if left >= right { &[[0.0, 1.0]] } else { &[[0.0, left], [right, 1.0]] };
         for (part, &range) in ranges.iter().enumerate() {
-            for (piece, mixture) in mixtures(range) {
+            let vanishes = |&(piece, mixture): &(u8, [f64; 3])| {
+                (segment.straight[0] && piece == 0 && mixture == [1.0, 0.0, 0.0])
+                    || (segment.straight[1] && piece == 2 && mixture == [0.0, 0.0, 1.0])
+            };
+            for (piece, mixture) in mixtures(range).into_iter().filter(|c| !vanishes(c)) {
                 for normal in 0..2 {
                     out.push(Row { kind: Kind::Plane { piece, normal, mixture }, factor });
                     if ranges.len() == 2 {

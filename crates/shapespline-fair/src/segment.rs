@@ -4,7 +4,7 @@ use glam::DVec3;
 use shapespline_criteria::{Calls, Checker, separation};
 use shapespline_geometry::{DataPolygon, Dimension, length, normalize};
 
-use crate::{Constraints, cubic::sum, element::Span, energy::Energy};
+use crate::{Constraints, cubic::sum, element::Span, energy::Energy, runs::Runs};
 
 /// Turns above 163° (`‖l + l'‖` at most this) have no forward direction.
 const SHARPEST: f64 = 0.3;
@@ -34,6 +34,8 @@ pub(crate) struct Segment {
     pub(crate) planar: bool,
     /// Sines of the turning angles at the two nodes.
     pub(crate) sines: [f64; 2],
+    /// Whether `ω` vanishes at each node by construction.
+    pub(crate) straight: [bool; 2],
     /// Whether the turn at each node is asked for.
     pub(crate) turns: [bool; 2],
     /// Sign of the turn asked for at each node along the binormal of the other, where neither convexity
@@ -45,7 +47,8 @@ pub(crate) struct Segment {
     pub(crate) gamma: f64,
     /// Sign of torsion asked for, or 0.
     pub(crate) torsion: f64,
-    /// Unit bisectors of the chords at the two nodes, zero where the polygon turns back.
+    /// Unit bisectors of the chords at the two nodes, zero where the polygon turns back; of straight runs
+    /// their direction.
     pub(crate) bisectors: [DVec3; 2],
     /// Parts of the segment on which `ω` stays near the normals.
     pub(crate) plane: Option<[f64; 2]>,
@@ -85,6 +88,7 @@ pub(crate) struct Demands<'a> {
     pub(crate) checker: &'a Checker<'a>,
     pub(crate) units: Units,
     pub(crate) constraints: &'a Constraints,
+    pub(crate) runs: &'a Runs,
 }
 
 impl Demands<'_> {
@@ -153,6 +157,7 @@ impl Demands<'_> {
             let sum = a + b;
             if sum.length() > SHARPEST { sum.normalize() } else { DVec3::ZERO }
         };
+        let lines = [i, (i + 1) % polygon.nodes()].map(|node| self.runs.line(node));
         let bend = self.bend(i);
         let end = if bend == Bend::Inflecting { -normalize(q) } else { normalize(q) };
         let neighbours = if polygon.is_closed() {
@@ -170,6 +175,7 @@ impl Demands<'_> {
             binormals: [normalize(p), normalize(q)],
             planar: polygon.dimension() == Dimension::Two,
             sines: [p.length(), q.length()],
+            straight: lines.map(|line| line.is_some()),
             turns: [Calls::TURNING_AT_START, Calls::TURNING_AT_END].map(|at| calls.any(at)),
             pair: if bend == Bend::Free && calls.any(Calls::TURNING_PAIR) {
                 p.dot(q).signum()
@@ -178,7 +184,10 @@ impl Demands<'_> {
             },
             gamma: p.dot(after),
             torsion: self.torsion(i),
-            bisectors: [bisector(before, own), bisector(own, after)],
+            bisectors: [
+                lines[0].unwrap_or_else(|| bisector(before, own)),
+                lines[1].unwrap_or_else(|| bisector(own, after)),
+            ],
             plane: if split {
                 let at = separation(polygon, i);
                 Some([0.5 * at, 0.5 * (1.0 + at)])

@@ -53,6 +53,9 @@ impl<'a> Shape<'a> {
         let v = s.speed;
         match leg {
             0 => (s.bisectors[0], v),
+            // Where the curve is straight both legs lead along the line, however sharp the turn.
+            1 if s.straight[0] => (s.bisectors[0], 0.5 * v),
+            3 if s.straight[1] => (s.bisectors[1], 0.5 * v),
             1 => (between(s.bisectors[0]), 0.5 * v),
             2 => (own, 0.5 * v),
             3 => (between(s.bisectors[1]), 0.5 * v),
@@ -356,6 +359,7 @@ mod tests {
             bend,
             normals,
             planar: false,
+            straight: [false; 2],
             sines: [0.4, 0.7],
             turns: [true; 2],
             pair: -1.0,

@@ -3,7 +3,7 @@
 use crate::{
     Energy, Method, Phase,
     barrier::Barrier,
-    chain::{Chain, Freedom},
+    chain::Chain,
     control::Control,
     energy,
     mend::{mend, refresh, set_start, shorten},
@@ -146,7 +146,9 @@ pub(crate) fn replace(demands: &Demands<'_>, chain: &mut Chain) {
 /// tangents keep their length where that is possible, and else are as short as the handles.
 pub(crate) fn restart_all(demands: &Demands<'_>, chain: &mut Chain) {
     chain.ask_no_speed();
-    if !start_all(demands, chain, false) && chain.freedom.contains(&Freedom::TangentHeld) {
+    if !start_all(demands, chain, false)
+        && chain.freedom.iter().any(|freedom| freedom.holds_tangent())
+    {
         start_all(demands, chain, true);
     }
 }
@@ -159,7 +161,7 @@ fn start_all(demands: &Demands<'_>, chain: &mut Chain, shortens: bool) -> bool {
     for _ in 0..60 {
         for (j, &scales) in scales.iter().enumerate() {
             set_start(demands, chain, j, scales);
-            if shortens && chain.freedom[j] == Freedom::TangentHeld {
+            if shortens && chain.freedom[j].holds_tangent() {
                 shorten(demands, chain, j, scales);
             }
         }

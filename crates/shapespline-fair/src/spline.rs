@@ -37,6 +37,8 @@ pub struct FairSpline {
     energy: Energy,
     /// The points at which it has corners.
     corners: Vec<usize>,
+    /// The segments on which it is straight by construction, ascending.
+    straight: Vec<usize>,
 }
 
 /// The stored form, checked on reading as far as anything could go wrong later.
@@ -49,6 +51,7 @@ struct Stored {
     boundary: Boundary,
     energy: Energy,
     corners: Vec<usize>,
+    straight: Vec<usize>,
 }
 
 #[cfg(feature = "serde")]
@@ -56,7 +59,7 @@ impl TryFrom<Stored> for FairSpline {
     type Error = InputError;
 
     fn try_from(stored: Stored) -> Result<Self, InputError> {
-        let Stored { curve, nodes, boundary, energy, corners } = stored;
+        let Stored { curve, nodes, boundary, energy, corners, straight } = stored;
         let bad = |index: usize, value: usize| InputError::OutOfRange {
             argument: "nodes",
             index,
@@ -72,12 +75,16 @@ impl TryFrom<Stored> for FairSpline {
         if let Some(i) = nodes.windows(2).position(step) {
             return Err(bad(i + 1, nodes[i + 1]));
         }
-        let beyond = |&k: &usize| k >= nodes.len();
-        if let Some(index) = corners.iter().position(beyond) {
-            let (value, allowed) = (corners[index] as f64, "indices of points");
-            return Err(InputError::OutOfRange { argument: "corners", index, value, allowed });
+        for (argument, all, count, allowed) in [
+            ("corners", &corners, nodes.len(), "indices of points"),
+            ("straight", &straight, nodes.len() - 1, "indices of segments"),
+        ] {
+            if let Some(index) = all.iter().position(|&k| k >= count) {
+                let value = all[index] as f64;
+                return Err(InputError::OutOfRange { argument, index, value, allowed });
+            }
         }
-        Ok(Self { curve, nodes, boundary, energy, corners })
+        Ok(Self { curve, nodes, boundary, energy, corners, straight })
     }
 }
 
@@ -105,10 +112,14 @@ impl FairSpline {
     ) -> Result<Fit, FitError> {
         options.validate()?;
         let constraints = &options.constraints;
+        let mut straight = Vec::new();
         if !constraints.is_empty() {
             constraints.validate(&polygon)?;
-            let checker = Checker::new(&polygon, options.criteria, options.tolerances);
-            constraints.refuse_conflicts(&checker.with_free_nodes(&constraints.corners))?;
+            let checker = Checker::new(&polygon, options.criteria, options.tolerances)
+                .with_free_nodes(&constraints.corners);
+            let runs = constraints.runs(&checker)?;
+            constraints.refuse_conflicts(&checker, &runs)?;
+            straight = runs.segments;
         }
         let mut control = Control::new(options.max_iterations, monitor);
         let (boundary, energy) = (polygon.boundary(), options.energy);
@@ -118,7 +129,7 @@ impl FairSpline {
         }
         let (curve, nodes) = assemble(polygon, whole.legs, whole.others)?;
         let corners = constraints.corners.clone();
-        let curve = Self { curve, nodes, boundary, energy, corners };
+        let curve = Self { curve, nodes, boundary, energy, corners, straight };
         let report = match whole.report {
             Some(report) => report,
             None => curve.check(options.criteria, options.tolerances)?,
@@ -174,6 +185,12 @@ impl FairSpline {
         &self.corners
     }
 
+    /// The segments on which the curve is straight by construction.
+    #[must_use]
+    pub fn straight(&self) -> &[usize] {
+        &self.straight
+    }
+
     /// Planar or spatial.
     #[must_use]
     pub fn dimension(&self) -> Dimension {
@@ -224,13 +241,17 @@ impl FairSpline {
     ) -> Result<ShapeReport, InputError> {
         let polygon = self.polygon()?;
         let tolerances = tolerances.validate()?;
-        if self.nodes.len() == self.curve.knots().len() && self.corners.is_empty() {
+        let plain = self.corners.is_empty() && self.straight.is_empty();
+        if plain && self.nodes.len() == self.curve.knots().len() {
             let legs = self.curve.legs();
             return Ok(Checker::new(&polygon, criteria, tolerances).report(|i| legs[i]));
         }
         let curve = PiecewiseBezier::from(&self.curve);
         match CurveChecker::new(&polygon, &curve, criteria, tolerances, INTERPOLATION) {
-            Ok(checker) => Ok(checker.with_free_nodes(&self.corners).report()),
+            Ok(checker) => Ok(checker
+                .with_free_nodes(&self.corners)
+                .with_straight_segments(&self.straight, &self.corners)
+                .report()),
             // The curve is made of the points that it is checked against.
             Err(_) => Ok(Checker::new(&polygon, criteria, tolerances).report(|_| [DVec3::NAN; 2])),
         }
@@ -283,10 +304,13 @@ impl Whole {
         let unlimited = Constraints { max_deviation: None, ..constraints.clone() };
         let plain = Plain::of(polygon)?;
         let checker = Checker::new(polygon, options.criteria, options.tolerances);
+        let runs = constraints.runs(&checker)?;
+        let checker = checker.with_straight_segments(&runs.segments, &[]);
         let units = Units::of(polygon);
-        let mut demands = Demands { checker: &checker, units, constraints: &unlimited };
+        let (constrained, runs) = (&constraints, &runs);
+        let mut demands = Demands { checker: &checker, units, constraints: &unlimited, runs };
         let mut found = climb(&demands, &plain, options, control);
-        demands.constraints = &constraints;
+        demands.constraints = constrained;
         if found.any_deviates(&demands) {
             found = climb(&demands, &plain, options, control);
         }

@@ -39,6 +39,9 @@ pub(crate) fn start(demands: &Demands<'_>, node: usize, scales: Scales) -> Node 
     let alpha = (h1 / (h0 + h1)).clamp(low, 1.0 - low);
     let beta = 1.0 - alpha;
     let mut t = u * alpha + v * beta;
+    if let Some(line) = demands.runs.line(node) {
+        return Node { q: line * (scales.handle * speed), r: DVec3::ZERO };
+    }
     let p = u.cross(v);
     let sine = p.length();
     if sine <= demands.checker.tolerances().zero || t.length() < 1e-6 {
@@ -176,7 +179,8 @@ mod tests {
 
     use super::*;
     use crate::{
-        Constraints, cubic::Plain, rows::Rules, segment::Units, solve::restart_all, window::Window,
+        Constraints, cubic::Plain, rows::Rules, runs::Runs, segment::Units, solve::restart_all,
+        window::Window,
     };
 
     /// Points of a walk in space or in the plane, lengths over one decade.
@@ -204,7 +208,8 @@ mod tests {
             let polygon = walk(seed, seed % 2 == 0);
             let checker = Checker::new(&polygon, Criteria::ALL, Tolerances::default());
             let (units, constraints) = (Units::of(&polygon), &Constraints::default());
-            let demands = Demands { checker: &checker, units, constraints };
+            let runs = &Runs::default();
+            let demands = Demands { checker: &checker, units, constraints, runs };
             let plain = Plain::of(&polygon).unwrap();
             let rules = Rules { cones: [0.19, 0.19], exact_middles: false };
             let whole = Window { start: 0, count: polygon.nodes() };

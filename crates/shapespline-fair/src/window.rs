@@ -90,21 +90,22 @@ impl Window {
         };
         let held = |i: usize| {
             let inside = (i + total - self.start) % total < self.count;
-            match (inside, is_given(polygon, i)) {
-                (false, _) => Freedom::Held,
-                (true, true) => Freedom::TangentHeld,
-                (true, false) => {
+            match (inside, is_given(polygon, i), demands.runs.line(i)) {
+                (false, ..) => Freedom::Held,
+                (true, true, None) => Freedom::TangentHeld,
+                (true, true, Some(line)) => Freedom::StraightHeld(line),
+                (true, false, Some(line)) => Freedom::Straight(line),
+                (true, false, None) => {
                     demands.constraints.direction(i).map_or(Freedom::Free, Freedom::Along)
                 }
             }
         };
         // Where a direction is asked for the curve begins with it.
-        let node = |i: usize| match held(i) {
-            Freedom::Along(t) => {
-                let Node { q, r } = plain(i);
-                Node { q: t * q.dot(t).max(SLOWEST * q.length()), r }
-            }
-            _ => plain(i),
+        let node = |i: usize| {
+            let Node { q, r } = plain(i);
+            let [first, second] = held(i).lines();
+            let q = first.map_or(q, |t| t * q.dot(t).max(SLOWEST * q.length()));
+            Node { q, r: second.map_or(r, |t| t * r.dot(t)) }
         };
         let index = |j: usize| (first + j) % total;
         // Of a closed curve the last segment ends at the first node.

@@ -189,6 +189,14 @@ impl<T: Coefficient> Polynomial<T> {
         quotient
     }
 
+    /// The polynomial divided by `1 − t`, where its last coefficient is zero.
+    #[must_use]
+    pub fn divided_by_rest(&self) -> Self {
+        let backwards =
+            |p: &Self| Self::new(p.coefficients.iter().rev().copied().collect(), p.error);
+        backwards(&backwards(self).divided_by_t())
+    }
+
     /// The value at `t`, by de Casteljau's algorithm.
     #[must_use]
     pub fn value(&self, t: f64) -> T {
@@ -351,6 +359,8 @@ mod tests {
             prop_assert!((p.derivative().value(t) - slope).abs() < 1e-4);
             let times_t = p.product(&polynomial(&[0.0, 1.0]), |a, b| a * b);
             prop_assert!((times_t.divided_by_t().value(t) - p.value(t)).abs() < 1e-12);
+            let times_rest = p.product(&polynomial(&[1.0, 0.0]), |a, b| a * b);
+            prop_assert!((times_rest.divided_by_rest().value(t) - p.value(t)).abs() < 1e-12);
         }
 
         #[test]

@@ -30,20 +30,23 @@ pub(crate) struct Given {
     corners: Corners,
     tangents: Vec<(usize, DVec3)>,
     max_deviation: Option<f64>,
+    straight: bool,
 }
 
 impl Given {
-    /// What the arguments `corners`, `tangents` and `max_deviation` say.
+    /// What the arguments `corners`, `tangents`, `max_deviation` and `straight` say.
     pub(crate) fn new(
         corners: Option<&Bound<'_, PyAny>>,
         tangents: Option<&Bound<'_, PyAny>>,
         max_deviation: Option<f64>,
+        straight: bool,
         dimension: Dimension,
     ) -> PyResult<Self> {
         Ok(Self {
             corners: corners.map_or(Ok(Corners::None), corners_of)?,
             tangents: tangents.map_or(Ok(Vec::new()), |given| tangents_of(given, dimension))?,
             max_deviation,
+            straight,
         })
     }
 
@@ -76,7 +79,8 @@ impl Given {
         let at = |&(point, vector): &(usize, DVec3)| Ok((node("tangents", point, point)?, vector));
         let mut tangents = self.tangents.iter().map(at).collect::<Result<Vec<_>, InputError>>()?;
         tangents.sort_by_key(|tangent| tangent.0);
-        Ok(Constraints { corners, tangents, max_deviation: self.max_deviation })
+        let Self { max_deviation, straight, .. } = *self;
+        Ok(Constraints { corners, tangents, max_deviation, straight })
     }
 }
 

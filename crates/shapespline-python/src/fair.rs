@@ -62,6 +62,10 @@ use crate::{
 /// tangents : dict of int to array_like, optional
 ///     Directions of the curve at points, by index; lengths do not matter. What torsion asks may not go
 ///     together with them.
+/// straight : bool
+///     Whether the curve is exactly straight along collinear runs of three and more points. Where a run
+///     ends in a turn the curve has no curvature and its tangent lies along the run; turning and torsion are
+///     asked as ≥ 0 there, and reports say ``straight``. A turn in which two runs meet has to be a corner.
 /// max_deviation : float, optional
 ///     How far at most the curve lies from the chord between its points, a length: control points are held
 ///     within it, and with them the curve.
@@ -115,10 +119,12 @@ impl FairSpline {
             corners=None,
             tangents=None,
             max_deviation=None,
+            straight=false,
         ),
         text_signature = "(points, parameters='chordal', *, boundary='natural', \
                           closed=False, repeated='error', energy='parametric', criteria=None, resolution=0.0, coplanarity=0.2, collinearity=0.2, \
-                          tolerance=1e-9, max_iterations=None, corners=None, tangents=None, max_deviation=None)"
+                          tolerance=1e-9, max_iterations=None, corners=None, tangents=None, max_deviation=None, \
+                          straight=False)"
     )]
     // One argument a keyword: this is the signature that users see.
     #[allow(clippy::too_many_arguments)]
@@ -139,8 +145,9 @@ impl FairSpline {
         corners: Option<&Bound<'_, PyAny>>,
         tangents: Option<&Bound<'_, PyAny>>,
         #[pyo3(from_py_with = options::max_deviation)] max_deviation: Option<f64>,
+        #[pyo3(from_py_with = options::straight)] straight: bool,
     ) -> PyResult<PyClassInitializer<Self>> {
-        let given = Given::new(corners, tangents, max_deviation, points.dimension)?;
+        let given = Given::new(corners, tangents, max_deviation, straight, points.dimension)?;
         let input = CurveInput::new(points, parameters, boundary, closed, repeated)?;
         let criteria = criteria.or(Criteria::OF_FITS);
         let tolerances = tolerances(resolution, coplanarity, collinearity, tolerance)?;
@@ -168,6 +175,20 @@ impl FairSpline {
         let base = slf.as_super().get();
         let map = &base.curve.map;
         PyTuple::new(slf.py(), base.curve.corners().iter().map(|&node| map.node(node)))
+    }
+
+    /// The segments on which the curve is straight by construction, a tuple of indices.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import shapespline as ss
+    /// >>> ss.FairSpline([[0, 0], [1, 0], [3, 0], [4, 1]], straight=True).straight
+    /// (0, 1)
+    #[getter]
+    fn straight<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyTuple>> {
+        let base = slf.as_super().get();
+        let map = &base.curve.map;
+        PyTuple::new(slf.py(), base.curve.straight().iter().map(|&segment| map.segment(segment)))
     }
 
     /// What was minimised: ``"parametric"`` or ``"bending"``.

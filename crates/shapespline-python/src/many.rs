@@ -11,7 +11,7 @@ use pyo3::{
 };
 use shapespline::{
     catmull_rom::{self, Continuity, Directions, HandleOptions},
-    fair::{Energy, FairOptions},
+    fair::{Constraints, Energy, FairOptions},
     geometry::{Boundary, DVec3, DataPolygon, InputMap, Parametrization, Ragged, Repeated},
     nu::{self, Strategy},
     search::{Collection, FitError, Tension},
@@ -124,6 +124,7 @@ pub(crate) fn _fit_many<'py>(
     #[pyo3(from_py_with = options::tension)] tension: f64,
     #[pyo3(from_py_with = options::tangent_scale)] tangent_scale: f64,
     #[pyo3(from_py_with = options::energy)] energy: Energy,
+    #[pyo3(from_py_with = options::straight)] straight: bool,
 ) -> PyResult<(Bound<'py, PyTuple>, Bound<'py, PyDict>)> {
     let boundary = boundary.unwrap_or(Ends::Default).of(points.dimension, closed)?;
     let parametrization = parameters.0;
@@ -147,7 +148,7 @@ pub(crate) fn _fit_many<'py>(
                 tolerances,
                 energy,
                 max_iterations,
-                ..FairOptions::default()
+                constraints: Constraints { straight, ..Constraints::default() },
             };
             fit_fair(polygon, map, repeated, &options, &request, ask)
         }),

@@ -122,11 +122,18 @@ pub(crate) fn repeated(object: &Bound<'_, PyAny>) -> PyResult<Repeated> {
     choose("repeated", &name("repeated", object)?, &ways)
 }
 
-/// `closed`: Python's bool or NumPy's.
 pub(crate) fn closed(object: &Bound<'_, PyAny>) -> PyResult<bool> {
+    flag("closed", object)
+}
+pub(crate) fn straight(object: &Bound<'_, PyAny>) -> PyResult<bool> {
+    flag("straight", object)
+}
+
+/// Python's bool or NumPy's.
+fn flag(argument: &str, object: &Bound<'_, PyAny>) -> PyResult<bool> {
     object.extract::<bool>().map_err(|error| {
         reworded(object.py(), error, |_| {
-            PyTypeError::new_err(format!("closed must be True or False, got {}", kind(object)))
+            PyTypeError::new_err(format!("{argument} must be True or False, got {}", kind(object)))
         })
     })
 }

@@ -125,6 +125,12 @@ impl<'a> CurveChecker<'a> {
         Self { checker: self.checker.with_free_nodes(nodes), ..self }
     }
 
+    /// Takes some segments to be straight by construction, as [`Checker::with_straight_segments`].
+    #[must_use]
+    pub fn with_straight_segments(self, segments: &[usize], free: &[usize]) -> Self {
+        Self { checker: self.checker.with_straight_segments(segments, free), ..self }
+    }
+
     /// The criteria's own checker: what the polygon calls for.
     #[must_use]
     pub fn checker(&self) -> &Checker<'a> {
@@ -289,6 +295,7 @@ impl<'a> CurveChecker<'a> {
         let origin = polygon.points()[i];
         let parts = self.curve.between([u[i], u[i + 1]], origin);
         Segment::new(&parts, self.curve.is_rational(), length(origin))
+            .beside(self.checker.calls()[i])
     }
 
     /// Whether the curve passes through the points and does not jump.

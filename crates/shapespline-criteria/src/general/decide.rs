@@ -69,7 +69,15 @@ pub(crate) fn decide(segment: &Segment, question: &Question) -> Sign {
         Criterion::Turning => turns_at_nodes(segment, question),
         Criterion::Torsion => {
             let sign = question.torsion_sign();
-            each(segment, |piece| piece.determinant().map(1.0, |d| sign * d).sign())
+            each(segment, |piece| {
+                let torsion = piece.determinant().map(1.0, |d| sign * d);
+                // Written so that a NaN does not count as zero.
+                let is_zero = || torsion.coefficients().iter().all(|d| d.abs() <= torsion.error());
+                if piece.is_beside_straight() && is_zero() {
+                    return Sign::Positive;
+                }
+                torsion.sign()
+            })
         }
         Criterion::Coplanarity => cones(segment, question, Piece::omega),
         Criterion::Collinearity => cones(segment, question, Piece::tangent),

@@ -46,6 +46,7 @@ impl Checker<'_> {
     fn left_by_subdivision(&self, segment: usize, parts: &[BezierPart]) -> Vec<(Criterion, Sign)> {
         let required = self.calls()[segment];
         let pieces = Segment::new(parts, false, length(self.polygon().points()[segment]));
+        let pieces = pieces.beside(required);
         let sign = |criterion| {
             let question = self.question(segment, criterion)?;
             let sign = decide(&pieces, &question);

@@ -3,6 +3,8 @@
 use glam::{DVec3, DVec4};
 use shapespline_geometry::{BezierPart, polynomial::Polynomial};
 
+use crate::Calls;
+
 /// Parts of a segment shorter than this are rounding: where a part ends at a break, `to` and the break
 /// differ by it, and differences of control points of what lies between are zero.
 const SLIVER: f64 = 1e-12;
@@ -16,6 +18,8 @@ pub(crate) struct Piece {
     a: [Polynomial<DVec3>; 4],
     /// `w, w', w'', w'''`, of a rational curve.
     w: Option<[Polynomial<f64>; 4]>,
+    /// Whether `ω` vanishes at the start and at the end by construction.
+    straight: [bool; 2],
 }
 
 /// The curve between two data points, moved so that it begins at zero, and brought to a size near
@@ -44,9 +48,21 @@ impl Segment {
                 local: part.local,
                 a: derivatives(Polynomial::new(points, error)),
                 w: rational.then(|| derivatives(Polynomial::new(weights(), 4.0 * f64::EPSILON))),
+                straight: [false; 2],
             }
         };
         Self { pieces: parts.iter().map(piece).collect() }
+    }
+
+    /// The same beside segments that are straight by construction, as its calls say.
+    pub(crate) fn beside(mut self, calls: Calls) -> Self {
+        if let Some(first) = self.pieces.first_mut() {
+            first.straight[0] = calls.any(Calls::STRAIGHT_BEFORE);
+        }
+        if let Some(last) = self.pieces.last_mut() {
+            last.straight[1] = calls.any(Calls::STRAIGHT_AFTER);
+        }
+        self
     }
 
     /// A cubic of given end legs, with the derivatives that the legs give: differences of control points
@@ -67,7 +83,14 @@ impl Segment {
             of(&[b - a, c - b], 6.0),
             of(&[a - 2.0 * b + c], 6.0),
         ];
-        Self { pieces: vec![Piece { local: [0.0, 1.0], a: derivatives, w: None }] }
+        Self {
+            pieces: vec![Piece {
+                local: [0.0, 1.0],
+                a: derivatives,
+                w: None,
+                straight: [false; 2],
+            }],
+        }
     }
 
     /// A vector along the tangent at the start (0) or the end (1), and what it may be off by.
@@ -119,6 +142,7 @@ impl Piece {
             local: [outer(from), outer(to)],
             a: derivatives(self.a[0].part(from, to)),
             w: self.w.as_ref().map(|w| derivatives(w[0].part(from, to))),
+            straight: [self.straight[0] && from <= 0.0, self.straight[1] && to >= 1.0],
         }
     }
 
@@ -148,8 +172,23 @@ impl Piece {
         }
     }
 
-    /// Positive multiples of `ω = γ' × γ''`.
+    /// Positive multiples of `ω = γ' × γ''`. Where it vanishes at an end by construction, and does so to
+    /// rounding, that zero is divided out.
     pub(crate) fn omega(&self) -> Polynomial<DVec3> {
+        let mut omega = self.whole_omega();
+        let vanishes = |omega: &Polynomial<DVec3>, end: usize| {
+            self.straight[end] && omega.ends()[end].length() <= omega.error()
+        };
+        if vanishes(&omega, 0) {
+            omega = omega.divided_by_t();
+        }
+        if vanishes(&omega, 1) {
+            omega = omega.divided_by_rest();
+        }
+        omega
+    }
+
+    fn whole_omega(&self) -> Polynomial<DVec3> {
         let cross = |i: usize, j: usize| self.a[i].product(&self.a[j], DVec3::cross);
         match &self.w {
             None => cross(1, 2),
@@ -159,6 +198,11 @@ impl Piece {
                 first.plus(&times(cross(0, 1), 2), 1.0)
             }
         }
+    }
+
+    /// Whether the piece begins or ends where `ω` vanishes by construction: then its torsion is zero.
+    pub(crate) fn is_beside_straight(&self) -> bool {
+        self.straight != [false; 2]
     }
 
     /// Positive multiples of `det[γ', γ'', γ''']`.

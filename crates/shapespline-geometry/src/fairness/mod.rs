@@ -142,7 +142,8 @@ fn measure(curve: &PiecewiseBezier, i: usize, unit: f64) -> Measured {
     let origin = points[0].truncate() / points[0].w;
     let scaled = |p: &glam::DVec4| ((p.truncate() - origin * p.w) / unit).extend(p.w);
     let planar = curve.dimension() == Dimension::Two;
-    let piece = Piece::new(points.iter().map(scaled).collect(), curve.is_rational(), planar);
+    let piece = Piece::new(points.iter().map(scaled).collect(), curve.is_rational(), planar)
+        .moved(origin.length() / unit);
     let (extrema, cusp) = (piece.extrema(), piece.cusp());
     let mut cuts: Vec<f64> =
         [0.0, 1.0].into_iter().chain(extrema.at.iter().copied()).chain(cusp).collect();

@@ -25,6 +25,8 @@ pub(crate) struct Piece {
     turn: Polynomial<DVec3>,
     weight: Option<Polynomial<f64>>,
     planar: bool,
+    /// What the control points were rounded by before they were moved to the origin.
+    rounding: f64,
 }
 
 /// Curvature at an end of a piece.
@@ -67,12 +69,25 @@ impl Piece {
             }
         };
         let turn = velocity.product(&velocity.derivative(), DVec3::cross);
-        Self { derivatives: [points, first, second, third], velocity, turn, weight, planar }
+        let derivatives = [points, first, second, third];
+        Self { derivatives, velocity, turn, weight, planar, rounding: 0.0 }
+    }
+
+    /// The same of control points that lay at a distance from the origin.
+    pub(crate) fn moved(self, distance: f64) -> Self {
+        Self { rounding: f64::EPSILON * distance, ..self }
     }
 
     /// `‖V‖²`.
     fn speed_squared(&self) -> Polynomial<f64> {
         self.velocity.product(&self.velocity, DVec3::dot)
+    }
+
+    /// Whether `V×V'` is zero, to the rounding of its own and of the control points as they were given.
+    fn is_straight(&self) -> bool {
+        let (first, n) = (self.velocity.derivative(), self.derivatives[0].degree() as f64);
+        let off = 2.0 * n * self.rounding * (first.bound() + 2.0 * n * self.velocity.bound());
+        self.turn.bound() <= self.turn.error() + off
     }
 
     /// A parameter at which the speed is zero to rounding, if there is one.
@@ -87,6 +102,9 @@ impl Piece {
     /// Where curvature turns from rising to falling or back: sign changes of a polynomial, isolated by
     /// Bernstein subdivision. In space that of `d(κ²)/dt`, in the plane that of the signed curvature.
     pub(crate) fn extrema(&self) -> Extrema {
+        if self.is_straight() {
+            return Extrema::default();
+        }
         // κ = f w²/S^{3/2} with f = (V×V')_z, or κ² = f w⁴/S³ with f = ‖V×V'‖²; c is 1 or 2.
         let (f, c) = if self.planar {
             (self.turn.map(1.0, |v| v.z), 1.0)
@@ -138,8 +156,11 @@ impl Piece {
         let [d1, d2, _] = self.at(t);
         let speed = d1.length_squared();
         let curvature = d1.cross(d2).cross(d1) / (speed * speed);
-        let error =
-            self.derivatives[2].error() + self.derivatives[1].error() * d2.length() / speed.sqrt();
+        let n = self.derivatives[0].degree() as f64;
+        let moved = 2.0 * n * self.rounding;
+        let [first, second] =
+            [self.derivatives[1].error() + moved, self.derivatives[2].error() + 2.0 * n * moved];
+        let error = second + first * d2.length() / speed.sqrt();
         End { direction: d1.normalize_or_zero(), curvature, error: 4.0 * error / speed }
     }
 
@@ -150,6 +171,10 @@ impl Piece {
             parts.map(|part| integrate(&f, part, ACCURACY, negligible)).sum()
         };
         let length = over(0.0, &|t| self.at(t)[0].length());
+        // Of a piece that is straight to rounding nothing else is known, and rounding integrates slowly.
+        if self.is_straight() {
+            return [length, 0.0, 0.0];
+        }
         // ∫κ² ds of a piece that turns by 3e-7 rad is not worth eleven digits.
         let straight = 1e-2 * ACCURACY / length;
         let bending = over(straight, &|t| {

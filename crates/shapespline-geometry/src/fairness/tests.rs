@@ -107,6 +107,21 @@ fn extrema_are_those_that_samples_show() {
     }
 }
 
+/// Found on straight runs: the rounding of a skew line was integrated for a second per segment.
+#[test]
+fn a_line_has_no_energy_wherever_it_lies() {
+    for away in [0.0, 1.0, 100.0, 1e6] {
+        let (from, along) = (DVec3::new(0.3, -0.7, 0.2) * away, DVec3::new(0.31, 0.17, -0.23));
+        let at = |x: f64| (from + along * x).to_array();
+        let piece = |x: f64| [at(x), at(x + 0.2), at(x + 0.37), at(x + 0.7)];
+        let pieces: Vec<[[f64; 3]; 4]> = (0..20).map(|k| piece(0.7 * f64::from(k))).collect();
+        let all: Vec<&[[f64; 3]]> = pieces.iter().map(|piece| piece.as_slice()).collect();
+        let f = fairness(&curve(&all, Dimension::Three));
+        assert_eq!((f.bending, f.variation, f.extrema.len()), (0.0, 0.0, 0), "{away}");
+        assert!((f.length / (14.0 * along.length()) - 1.0).abs() < 1e-9);
+    }
+}
+
 #[test]
 fn cusps_corners_and_jumps_are_said() {
     // (t², t³) has its cusp at the start; moved inside by a longer interval.

@@ -52,6 +52,7 @@ impl Fitted {
             open.interval = open.interval.map(|u| self.own_parameter(u));
             open.segment = self.map.segment(open.segment);
         }
+        report.straight.iter_mut().for_each(|i| *i = self.map.segment(*i));
         report
     }
 

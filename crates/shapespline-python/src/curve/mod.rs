@@ -98,6 +98,10 @@ pub(crate) trait Curve: Debug + Send + Sync {
     fn corners(&self) -> &[usize] {
         &[]
     }
+    /// The segments that are straight by construction.
+    fn straight(&self) -> &[usize] {
+        &[]
+    }
     fn polygon(&self) -> Result<DataPolygon, InputError>;
     fn is_sound(&self) -> bool;
     /// Appends the curve in postcard's form.
@@ -164,6 +168,9 @@ impl Curve for FairSpline {
     }
     fn corners(&self) -> &[usize] {
         self.corners()
+    }
+    fn straight(&self) -> &[usize] {
+        self.straight()
     }
     fn polygon(&self) -> Result<DataPolygon, InputError> {
         self.polygon()

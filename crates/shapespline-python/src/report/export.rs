@@ -31,8 +31,8 @@ impl ShapeReport {
     /// dict
     ///     ``ok``, ``margin``, ``counts`` (criterion to ``violated`` and ``applicable``),
     ///     ``resolution``, ``coplanarity``, ``collinearity``, ``tolerance``, and the lists ``segments``, ``violations``
-    ///     (records) and ``undecided`` (``segment``, ``criterion``, ``interval``). A margin or location
-    ///     that does not exist is ``None``.
+    ///     (records), ``undecided`` (``segment``, ``criterion``, ``interval``) and ``straight``. A margin
+    ///     or location that does not exist is ``None``.
     ///
     /// Examples
     /// --------
@@ -77,6 +77,7 @@ impl ShapeReport {
         dict.set_item("segments", segments)?;
         dict.set_item("violations", violations)?;
         dict.set_item("undecided", undecided)?;
+        dict.set_item("straight", self.report.straight.clone())?;
         Ok(dict)
     }
 

@@ -5,7 +5,12 @@
 
 use std::sync::OnceLock;
 
-use pyo3::{call::PyCallArgs, exceptions::PyTypeError, prelude::*, types::PyDict};
+use pyo3::{
+    call::PyCallArgs,
+    exceptions::PyTypeError,
+    prelude::*,
+    types::{PyDict, PyTuple},
+};
 use rayon::prelude::*;
 use shapespline::{
     criteria::{self, Record},
@@ -168,6 +173,13 @@ impl ShapeReport {
     #[getter]
     fn segments(&self, py: Python<'_>) -> PyResult<Vec<ShapeRecord>> {
         self.records(py, |r| ShapeRecord::from(&r))
+    }
+
+    /// The segments on which the curve is straight by construction (``FairSpline(straight=True)``), a tuple
+    /// of indices: at their ends turning and torsion may be zero.
+    #[getter]
+    fn straight<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        PyTuple::new(py, &self.report.straight)
     }
 
     /// What could be neither proved nor refuted, ascending by segment: a list of `UndecidedRecord`.

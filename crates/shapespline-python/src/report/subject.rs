@@ -46,6 +46,7 @@ impl Judge<'_> {
                 let mut report = checker.report_with(go_on)?;
                 report.violations.iter_mut().for_each(|r| r.segment = map.segment(r.segment));
                 report.undecided.iter_mut().for_each(|r| r.segment = map.segment(r.segment));
+                report.straight.iter_mut().for_each(|i| *i = map.segment(*i));
                 report
             }
         })
@@ -110,8 +111,9 @@ impl Subject {
             Self::Own(curve) => {
                 let polygon = curve.polygon()?;
                 let broken = |nodes: &[usize]| nodes.len() < curve.cubic().knots().len();
-                if curve.nodes().is_some_and(broken) || !curve.corners().is_empty() {
-                    // Several pieces per segment, or nothing asked at corners: decided piece by piece.
+                let special = !curve.corners().is_empty() || !curve.straight().is_empty();
+                if curve.nodes().is_some_and(broken) || special {
+                    // Several pieces per segment, corners or straight runs: decided piece by piece.
                     let pieces = PiecewiseBezier::from(curve.cubic());
                     return CurveChecker::new(
                         &polygon,
@@ -120,7 +122,11 @@ impl Subject {
                         tolerances,
                         INTERPOLATION,
                     )
-                    .map(|checker| checker.with_free_nodes(curve.corners()))
+                    .map(|checker| {
+                        checker
+                            .with_free_nodes(curve.corners())
+                            .with_straight_segments(curve.straight(), curve.corners())
+                    })
                     .map(|checker| work(Judge::Other(checker, &curve.map)))
                     .map_err(|error| placed(&curve.map, error));
                 }
