@@ -16,8 +16,8 @@ pub struct Constraints {
     /// Points at which the curve has a corner, ascending. The data are split there, and each part is open
     /// data with natural ends at the corners.
     pub corners: Vec<usize>,
-    /// Directions that the curve has at points, each with the index of its point, ascending. What torsion asks
-    /// may not go together with them: the fit then ends unsolved.
+    /// Directions that the curve has at points, each with the index of its point, ascending. Where no curve
+    /// keeps the shape with them, the nearest with which one does are taken, and the diagnostics say so.
     pub tangents: Vec<(usize, DVec3)>,
     /// How far, at most, the curve's control points lie from the chord of their segment, and with them the
     /// curve.

@@ -3,10 +3,10 @@
 use std::collections::BTreeMap;
 
 use shapespline_criteria::Criterion;
-use shapespline_geometry::{BezierPart, DVec3, DVec4, length};
+use shapespline_geometry::{BezierPart, DVec3, DVec4, length, normalize};
 
 use crate::{
-    Energy, FairOptions, Method, Phase,
+    Constraints, Energy, FairOptions, Method, Phase,
     chain::Chain,
     control::Control,
     cubic::Plain,
@@ -15,11 +15,14 @@ use crate::{
     rows::Rules,
     segment::Demands,
     shape::off_chord,
-    solve::{LAST, finish, finish_bending, improve, quicken, replace, restart_all, solve},
+    solve::{
+        LAST, finish, finish_bending, improve, quicken, replace, restart_all, settle_nearby, solve,
+    },
     window::{BESIDE, Window, windows},
 };
 
 /// What the ladder came to.
+#[derive(Clone)]
 pub(crate) struct Found<'a> {
     pub(crate) plain: &'a Plain<'a>,
     /// The segments that were solved for, with what was found at their ends; all others are the plain cubic's.
@@ -48,17 +51,71 @@ pub(crate) fn climb<'a>(
         active: Vec::new(),
         open: Vec::new(),
     };
-    let cone = |epsilon: f64| (CONE * epsilon).asin().tan();
-    let tolerances = options.tolerances;
-    let rules = Rules {
-        cones: [cone(tolerances.coplanarity), cone(tolerances.collinearity)],
-        exact_middles: false,
-    };
+    let rules = rules(options);
     match options.energy {
         Energy::Parametric => found.open_windows(demands, rules, control),
         Energy::Bending => found.bend(demands, rules, control),
     }
     found
+}
+
+/// Turns a curve that keeps the shape into directions that are asked for at some nodes: from where it is if
+/// that goes, which it does for those that are near its own; or else by the ladder.
+pub(crate) fn turn<'a>(
+    free: &Found<'a>,
+    demands: &Demands<'_>,
+    options: &FairOptions,
+    control: &mut Control<'_>,
+) -> Found<'a> {
+    if free.open.is_empty() {
+        let mut found = free.clone();
+        if found.turn(demands, options.energy, rules(options), control) {
+            return found;
+        }
+    }
+    climb(demands, free.plain, options, control)
+}
+
+/// Ways from the directions asked for to the curve's own, tried in turn.
+const SHARES: [f64; 9] = [1.0 / 16.0, 0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875, 1.0];
+
+/// Turns a curve that keeps the shape as far into the directions asked for as it goes on keeping it: by shares
+/// at the nodes around the segments where it did not, and else at all. Returns the directions it has then.
+pub(crate) fn turn_nearly<'a>(
+    free: &Found<'a>,
+    open: &[usize],
+    demands: &Demands<'_>,
+    options: &FairOptions,
+    control: &mut Control<'_>,
+) -> Option<(Found<'a>, Vec<(usize, DVec3)>)> {
+    let count = demands.checker.polygon().nodes();
+    let is_near = |node: usize| open.iter().any(|&i| (node + count + 1 - i) % count <= 3);
+    for everywhere in [false, true] {
+        for share in SHARES {
+            let between = |&(node, asked): &(usize, DVec3)| {
+                if !everywhere && !is_near(node) {
+                    return (node, asked);
+                }
+                let own = normalize(free.node(demands, node).q);
+                (node, normalize(asked) * (1.0 - share) + own * share)
+            };
+            let tangents: Vec<_> = demands.constraints.tangents.iter().map(between).collect();
+            let constraints = Constraints { tangents, ..demands.constraints.clone() };
+            let demands = Demands { constraints: &constraints, ..*demands };
+            let mut found = free.clone();
+            if found.turn(&demands, options.energy, rules(options), control) {
+                return Some((found, constraints.tangents));
+            }
+        }
+    }
+    None
+}
+
+fn rules(options: &FairOptions) -> Rules {
+    let cone = |epsilon: f64| (CONE * epsilon).asin().tan();
+    let tolerances = options.tolerances;
+    let cones = [cone(tolerances.coplanarity), cone(tolerances.collinearity)];
+    Rules { cones, exact_middles: false }
 }
 
 /// Free nodes beside a failing segment in the widest windows short of the whole curve: in these, too, all
@@ -109,6 +166,12 @@ impl Found<'_> {
         self.solved.get(&i).copied().unwrap_or_else(|| self.plain_nodes(demands, i))
     }
 
+    /// What is known at a node.
+    fn node(&self, demands: &Demands<'_>, i: usize) -> Node {
+        let n = demands.checker.polygon().segments();
+        if i < n { self.nodes(demands, i)[0] } else { self.nodes(demands, n - 1)[1] }
+    }
+
     /// What the plain cubic has there.
     pub(crate) fn plain_nodes(&self, demands: &Demands<'_>, i: usize) -> [Node; 2] {
         let count = demands.checker.polygon().nodes();
@@ -146,7 +209,8 @@ impl Found<'_> {
             for window in windows(&failing, count, polygon.is_closed(), beside) {
                 let whole = window.count == count;
                 let thorough = whole || beside == WIDE;
-                let mut chain = window.chain(demands, self.plain, rules);
+                let mut chain =
+                    window.chain(demands, &|i| self.plain.node(i, demands.units), rules);
                 let own = || failing.iter().copied().filter(|&k| window.touches(k, count));
                 let Some(method) = solve(demands, &mut chain, thorough, control) else {
                     unsolved.extend(own());
@@ -177,10 +241,34 @@ impl Found<'_> {
         self.open.dedup();
     }
 
+    /// Turns the curve into the directions that are asked for, in windows around the nodes that have others. Whether
+    /// everything is proved in the end.
+    fn turn(
+        &mut self,
+        demands: &Demands<'_>,
+        energy: Energy,
+        rules: Rules,
+        control: &mut Control<'_>,
+    ) -> bool {
+        let polygon = demands.checker.polygon();
+        let (n, count) = (polygon.segments(), polygon.nodes());
+        let turned: Vec<usize> = (0..n).filter(|&i| self.leaves_direction(demands, i)).collect();
+        for window in windows(&turned, count, polygon.is_closed(), BESIDE) {
+            let mut chain = window.chain(demands, &|i| self.node(demands, i), rules);
+            if !settle_nearby(&mut chain, energy, control)
+                || !certify(demands, &mut chain, control).is_empty()
+            {
+                return false;
+            }
+            self.put(demands, &chain, Method::Elastic);
+        }
+        true
+    }
+
     /// Minimises the bending energy of the whole curve.
     fn bend(&mut self, demands: &Demands<'_>, rules: Rules, control: &mut Control<'_>) {
         let whole = Window { start: 0, count: demands.checker.polygon().nodes() };
-        let mut chain = whole.chain(demands, self.plain, rules);
+        let mut chain = whole.chain(demands, &|i| self.plain.node(i, demands.units), rules);
         let mut method = Method::Elastic;
         chain.relax_speeds();
         if !chain.all_hold() {

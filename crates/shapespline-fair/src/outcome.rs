@@ -110,6 +110,9 @@ pub struct Diagnostics {
     pub active: Vec<(Criterion, Vec<usize>)>,
     /// By how much given end tangents were shortened, at the start and at the end: 1 where they were not.
     pub tangent_scale: [f64; 2],
+    /// Nodes at which the curve leads in another direction than was asked for, where no curve was found that
+    /// keeps the shape with it, and the angle between the two.
+    pub turned: Vec<(usize, f64)>,
 }
 
 /// A curve together with how it was found and what a check says of it.

@@ -63,6 +63,40 @@ pub(crate) fn solve(
     Some(method)
 }
 
+/// Brings a chain that nearly holds to hold, and then to its minimum. Whether it came to hold.
+pub(crate) fn settle_nearby(chain: &mut Chain, energy: Energy, control: &mut Control<'_>) -> bool {
+    if energy == Energy::Bending {
+        chain.bend(0..chain.segments.len());
+    }
+    // As the curve was found: with middle coefficients as exact as they are asked for.
+    chain.set_exact_middles(true);
+    chain.relax_speeds();
+    if !chain.all_hold() {
+        control.begin(Phase::Elastic, chain.failing().len());
+        chain.set_exact_middles(false);
+        for penalty in [1e2, 1e4] {
+            let barrier = Barrier { weight: 0.01, penalty: Some(penalty), protects: true };
+            let limits = Limits { decrement: 1e-3, steps: 60, until_all_hold: true };
+            chain.minimise(&barrier, limits, control);
+        }
+        chain.set_exact_middles(true);
+        chain.relax_speeds();
+    }
+    if !chain.all_hold() {
+        return false;
+    }
+    // Where the curve nearly stops it goes on to bend less.
+    for k in 0..chain.segments.len() {
+        if is_slow(chain, k) {
+            chain.bend(k.saturating_sub(1)..(k + 2).min(chain.segments.len()));
+        }
+    }
+    control.begin(Phase::Improve, 0);
+    finish(chain, 0.01, control);
+    finish(chain, LAST, control);
+    true
+}
+
 /// Minimises the bending energy of segments of a feasible chain in which the curve nearly stops: there
 /// `∫|Q''|²du` does not see how it bends.
 pub(crate) fn quicken(demands: &Demands<'_>, chain: &mut Chain, control: &mut Control<'_>) {

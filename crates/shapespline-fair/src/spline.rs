@@ -18,7 +18,7 @@ use crate::{
     element::Node,
     energy,
     export::{Pieces, assemble},
-    ladder::{Found, climb},
+    ladder::{Found, climb, turn, turn_nearly},
     segment::{Demands, Units},
     window::is_given,
 };
@@ -151,6 +151,7 @@ impl FairSpline {
             extra_knots: curve.curve.knots().len() - curve.nodes.len(),
             active: active(&whole.active),
             tangent_scale: whole.tangent_scale,
+            turned: whole.turned,
         };
         Ok(Fit { curve, diagnostics, history: control.history, report })
     }
@@ -270,6 +271,8 @@ struct Whole {
     energy_cubic: f64,
     active: Vec<(Criterion, usize)>,
     tangent_scale: [f64; 2],
+    /// Nodes at which the curve has another direction than was asked for, and the angle.
+    turned: Vec<(usize, f64)>,
     /// The report on the whole, where all of it was proved on the way.
     report: Option<ShapeReport>,
 }
@@ -286,8 +289,29 @@ impl Whole {
             energy_cubic: 0.0,
             active: Vec::new(),
             tangent_scale: [1.0; 2],
+            turned: Vec::new(),
             report: None,
         }
+    }
+
+    /// Notes where the directions of a part are not those that were asked for.
+    fn note_turned(
+        &mut self,
+        first: usize,
+        polygon: &DataPolygon,
+        [asked, own]: [&[(usize, DVec3)]; 2],
+    ) {
+        let closed = first + polygon.segments() > self.segments;
+        for (&(node, asked), &(_, own)) in asked.iter().zip(own) {
+            let angle = asked.cross(own).length().atan2(asked.dot(own));
+            if angle > 1e-12 {
+                let node = first + node;
+                let node =
+                    if closed && node >= self.segments { node - self.segments } else { node };
+                self.turned.push((node, angle));
+            }
+        }
+        self.turned.sort_unstable_by_key(|turned| turned.0);
     }
 
     /// Finds the curve of a part, and adds it.
@@ -302,14 +326,29 @@ impl Whole {
         let constraints = part.own(&options.constraints, total);
         // What lies near enough by itself is the curve without the limit.
         let unlimited = Constraints { max_deviation: None, ..constraints.clone() };
+        let free = Constraints { tangents: Vec::new(), ..unlimited.clone() };
         let plain = Plain::of(polygon)?;
         let checker = Checker::new(polygon, options.criteria, options.tolerances);
         let runs = constraints.runs(&checker)?;
         let checker = checker.with_straight_segments(&runs.segments, &[]);
         let units = Units::of(polygon);
-        let (constrained, runs) = (&constraints, &runs);
-        let mut demands = Demands { checker: &checker, units, constraints: &unlimited, runs };
+        let (mut constrained, runs) = (&constraints, &runs);
+        let mut demands = Demands { checker: &checker, units, constraints: &free, runs };
         let mut found = climb(&demands, &plain, options, control);
+        let near;
+        if !unlimited.tangents.is_empty() {
+            demands.constraints = &unlimited;
+            let free = found;
+            found = turn(&free, &demands, options, control);
+            let contradict = !found.open.is_empty() && free.open.is_empty();
+            let nearly = |control| turn_nearly(&free, &found.open, &demands, options, control);
+            if let Some((turned, tangents)) = contradict.then(|| nearly(control)).flatten() {
+                self.note_turned(part.first, polygon, [&unlimited.tangents, &tangents]);
+                found = turned;
+                near = Constraints { tangents, ..constraints.clone() };
+                constrained = &near;
+            }
+        }
         demands.constraints = constrained;
         if found.any_deviates(&demands) {
             found = climb(&demands, &plain, options, control);

@@ -213,7 +213,7 @@ mod tests {
             let plain = Plain::of(&polygon).unwrap();
             let rules = Rules { cones: [0.19, 0.19], exact_middles: false };
             let whole = Window { start: 0, count: polygon.nodes() };
-            let mut chain = whole.chain(&demands, &plain, rules);
+            let mut chain = whole.chain(&demands, &|i| plain.node(i, units), rules);
             restart_all(&demands, &mut chain);
             assert!(chain.all_hold(), "walk {seed}: {:?}", chain.failing());
         }

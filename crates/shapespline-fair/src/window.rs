@@ -4,7 +4,6 @@ use shapespline_geometry::DataPolygon;
 
 use crate::{
     chain::{Chain, Freedom},
-    cubic::Plain,
     element::Node,
     rows::Rules,
     segment::Demands,
@@ -74,11 +73,15 @@ impl Window {
         (segment + nodes - self.start) % nodes < self.count
     }
 
-    /// The chain of a window, as the plain cubic has it.
-    pub(crate) fn chain(self, demands: &Demands<'_>, plain: &Plain<'_>, rules: Rules) -> Chain {
+    /// The chain of a window, as some curve has it at its nodes.
+    pub(crate) fn chain(
+        self,
+        demands: &Demands<'_>,
+        curve: &dyn Fn(usize) -> Node,
+        rules: Rules,
+    ) -> Chain {
         let polygon = demands.checker.polygon();
         let (total, n) = (polygon.nodes(), polygon.segments());
-        let plain = |i: usize| plain.node(i, demands.units);
         let whole = self.count == total;
         // With a held node on each side, where there is one.
         let (first, count) = if whole {
@@ -102,7 +105,7 @@ impl Window {
         };
         // Where a direction is asked for the curve begins with it.
         let node = |i: usize| {
-            let Node { q, r } = plain(i);
+            let Node { q, r } = curve(i);
             let [first, second] = held(i).lines();
             let q = first.map_or(q, |t| t * q.dot(t).max(SLOWEST * q.length()));
             Node { q, r: second.map_or(r, |t| t * r.dot(t)) }

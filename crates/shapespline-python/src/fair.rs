@@ -60,8 +60,9 @@ use crate::{
 ///     from which on points are corners. The data are split there; each part has natural ends at its
 ///     corners, and the criteria ask for nothing there. Given end tangents hold at the ends of the whole.
 /// tangents : dict of int to array_like, optional
-///     Directions of the curve at points, by index; lengths do not matter. What torsion asks may not go
-///     together with them.
+///     Directions of the curve at points, by index; lengths do not matter. Those on the wrong side of a
+///     chord are refused. Where no curve keeps the shape with them, the nearest directions are taken with
+///     which it does, and ``diagnostics.turned`` says by how much they differ.
 /// straight : bool
 ///     Whether the curve is exactly straight along collinear runs of three and more points. Where a run
 ///     ends in a turn the curve has no curvature and its tangent lies along the run; turning and torsion are

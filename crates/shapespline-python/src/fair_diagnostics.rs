@@ -38,6 +38,9 @@ use crate::pickle::{self, Kind, Reduced};
 /// tangent_scale : tuple of float
 ///     By how much given end tangents were shortened, where no curve of their length keeps the shape, at
 ///     the start and at the end: 1 where they were not.
+/// turned : dict
+///     Where no curve was found that keeps the shape in the directions ``tangents=``: the points at which it
+///     has the nearest that were, each with the angle between the two in radians.
 /// extra_knots : int
 ///     Knots beside those at the points.
 /// max_curvature : float
@@ -63,6 +66,7 @@ impl FairDiagnostics {
         for segment in found.active.iter_mut().flat_map(|(_, segments)| segments) {
             *segment = map.segment(*segment);
         }
+        found.turned.iter_mut().for_each(|(node, _)| *node = map.node(*node));
         Self {
             found,
             dropped: map.dropped().to_vec(),
@@ -136,6 +140,17 @@ impl FairDiagnostics {
     #[getter]
     fn tangent_scale(&self) -> (f64, f64) {
         self.found.tangent_scale.into()
+    }
+
+    /// The points at which the curve has another direction than was asked for, each with the angle between
+    /// the two; a fresh dict.
+    #[getter]
+    fn turned<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let turned = PyDict::new(py);
+        for (point, angle) in &self.found.turned {
+            turned.set_item(point, angle)?;
+        }
+        Ok(turned)
     }
 
     /// Indices of the points that were left out, ascending (``repeated="drop"``).
