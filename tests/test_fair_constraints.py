@@ -123,6 +123,31 @@ def test_the_largest_deviation_is_kept(dim, energy, rng):
         assert curve.diagnostics.energy >= free.diagnostics.energy * (1 - 5e-2)
 
 
+@pytest.mark.parametrize("energy", ["parametric", "bending"])
+@pytest.mark.parametrize("share", [0.2, 0.01])
+def test_a_closed_coil_is_held_near_its_polygon(energy, share):
+    points = polygons.load_points("coil_m16n08_first")
+    own = deviation(ss.FairSpline(points, boundary="periodic", energy=energy))
+    curve = ss.FairSpline(points, boundary="periodic", energy=energy, max_deviation=share * own)
+    assert deviation(curve) <= share * own
+    assert curve.check().ok
+
+
+@every_dimension
+@pytest.mark.parametrize("energy", ["parametric", "bending"])
+@pytest.mark.parametrize("ends", ["natural", "periodic"])
+@pytest.mark.parametrize("share", [1e-2, 1e-3, 1e-5])
+def test_nearly_the_polygon_is_had_or_refused(dim, energy, ends, share, rng):
+    points = polygons.random_walk(rng, 10, dim)
+    options = {"closed": ends == "periodic", "energy": energy}
+    longest = np.linalg.norm(np.diff(points, axis=0), axis=1).max()
+    curve = ss.FairSpline(points, max_deviation=share * longest, **options)
+    assert deviation(curve) <= share * longest * (1 + 1e-9)
+    assert curve.check().ok
+    with pytest.raises(ss.InputError, match="max_deviation must be more than a millionth"):
+        ss.FairSpline(points, max_deviation=1e-7 * longest, **options)
+
+
 @every_dimension
 def test_directions_are_kept(dim, rng):
     points = polygons.random_walk(rng, 10, dim)

@@ -27,6 +27,10 @@ pub struct Constraints {
     pub straight: bool,
 }
 
+/// Least deviation, over the longest chord: handles are as short, and below this rounding hides their
+/// directions.
+const LEAST_DEVIATION: f64 = 1e-6;
+
 /// Corners are where the tangent may jump: two open ends that meet.
 const ALLOWED_CORNER: &str = "the index of an inner point, more than the one before";
 const ALLOWED_TANGENT: &str =
@@ -106,6 +110,13 @@ impl Constraints {
             }
         }
         let Some(most) = self.max_deviation else { return Ok(()) };
+        let longest = (0..n).map(|i| length(polygon.chord(i))).fold(0.0, f64::max);
+        if !(most > LEAST_DEVIATION * longest) {
+            let (argument, value) = ("max_deviation", most);
+            let allowed =
+                "more than a millionth of the longest chord: nearer to it there is the polygon";
+            return Err(InputError::Scalar { argument, value, allowed });
+        }
         let [start, last] = polygon.tangents();
         for (segment, tangent, end) in [(0, start, 0.0), (n - 1, last.map(|v| -v), 1.0)] {
             let Some(tangent) = tangent else { continue };

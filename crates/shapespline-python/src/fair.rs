@@ -68,8 +68,8 @@ use crate::{
 ///     ends in a turn the curve has no curvature and its tangent lies along the run; turning and torsion are
 ///     asked as ≥ 0 there, and reports say ``straight``. A turn in which two runs meet has to be a corner.
 /// max_deviation : float, optional
-///     How far at most the curve lies from the chord between its points, a length: control points are held
-///     within it, and with them the curve.
+///     How far at most the curve lies from the chord between its points, a length above a millionth of the
+///     longest chord: control points are held within it, and with them the curve.
 ///
 /// Raises
 /// ------
