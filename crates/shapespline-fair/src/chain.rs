@@ -80,6 +80,9 @@ const CLEAR: f64 = 1e-3;
 /// is then below 3 % of its natural size.
 const BINDING: f64 = 0.03;
 
+/// Bending energy times length above which a segment nearly stops: half a turn evenly spread has π².
+const SLOW: f64 = 20.0;
+
 /// Speeds forward that may be asked for.
 const SPEEDS: [f64; 7] = [FORWARD, 0.05, 0.02, 0.01, 5e-3, 2e-3, 1e-3];
 
@@ -222,6 +225,12 @@ impl Chain {
         (0..self.segments.len()).all(|k| self.least(k) > CLEAR)
     }
 
+    /// Whether a segment turns in a small part of its length: the curve nearly stops there.
+    pub(crate) fn nearly_stops(&self, k: usize) -> bool {
+        let span = self.segments[k].span;
+        energy::bending(&span, &self.legs(k)) * span.length > SLOW
+    }
+
     /// Quadrature of a segment.
     pub(crate) fn rule(&self, k: usize) -> &[Gauss] {
         self.quadrature.get(k).map_or(&[], Vec::as_slice)
@@ -236,12 +245,16 @@ impl Chain {
         (0..self.segments.len()).map(value).sum()
     }
 
-    /// Value of objective and barrier on a segment; infinite outside of the barrier.
-    pub(crate) fn value(&self, k: usize, barrier: &Barrier) -> f64 {
+    /// Value of objective and barrier on a segment, infinite outside of the barrier; adds the values of its
+    /// conditions to `margins`.
+    pub(crate) fn value(&self, k: usize, barrier: &Barrier, margins: &mut Vec<f64>) -> f64 {
         let segment = &self.segments[k];
         let legs = self.legs(k);
         let mut barriers = 0.0;
-        self.each_row(k, &legs, |i, z| barriers += barrier.of(self.kept[i]).value(z));
+        self.each_row(k, &legs, |i, z| {
+            barriers += barrier.of(self.kept[i]).value(z);
+            margins.push(z);
+        });
         if barriers == f64::INFINITY {
             return barriers;
         }

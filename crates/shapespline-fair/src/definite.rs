@@ -5,9 +5,8 @@
 //! scaled before, with one scale per vector, so that the result does not depend on the directions of
 //! the axes.
 
-use nalgebra::SMatrix;
-
 use crate::{
+    eigen::eigen,
     element::{Span, TAU},
     legs::{ElementHessian, UNKNOWNS},
 };
@@ -24,21 +23,31 @@ pub(crate) fn make_definite(span: &Span, hessian: &mut ElementHessian) {
     }
     let sizes = sizes(span, hessian);
     let scale: [f64; UNKNOWNS] = std::array::from_fn(|i| 1.0 / sizes[i / 3].sqrt());
-    let scaled =
-        SMatrix::<f64, UNKNOWNS, UNKNOWNS>::from_fn(|i, j| hessian[i][j] * scale[i] * scale[j]);
-    let Some(eigen) = nalgebra::SymmetricEigen::try_new(scaled, 1e-12, 200) else { return };
-    let mended = eigen.eigenvalues.map(|x| if x < LEAST { LEAST.max(-REFLECTED * x) } else { x });
-    let v = &eigen.eigenvectors;
-    let mut weighted = *v;
-    for (mut column, x) in weighted.column_iter_mut().zip(mended.iter()) {
-        column *= *x;
-    }
-    let definite = weighted * v.transpose();
     // What may not move has a row of zeros, and keeps it: rounding must not move it either.
-    let fixed = hessian.map(|row| row.iter().all(|&x| x == 0.0));
-    for i in (0..UNKNOWNS).filter(|&i| !fixed[i]) {
-        for j in (0..UNKNOWNS).filter(|&j| !fixed[j]) {
-            hessian[i][j] = definite[(i, j)] / (scale[i] * scale[j]);
+    let (mut at, mut free) = ([0; UNKNOWNS], 0);
+    for (i, row) in hessian.iter().enumerate() {
+        if row.iter().any(|&x| x != 0.0) {
+            (at[free], free) = (i, free + 1);
+        }
+    }
+    let mut scaled = [[0.0; UNKNOWNS]; UNKNOWNS];
+    for i in 0..free {
+        for j in 0..free {
+            scaled[i][j] = hessian[at[i]][at[j]] * scale[at[i]] * scale[at[j]];
+        }
+    }
+    let Some(eigen) = eigen(free, &scaled) else { return };
+    for (&x, v) in eigen.values[..free].iter().zip(&eigen.vectors) {
+        if x >= LEAST {
+            continue;
+        }
+        let lift = LEAST.max(-REFLECTED * x) - x;
+        let mut unscaled = [0.0; UNKNOWNS];
+        (0..free).for_each(|i| unscaled[at[i]] = v[i] / scale[at[i]]);
+        for (row, a) in hessian.iter_mut().zip(unscaled) {
+            for (entry, b) in row.iter_mut().zip(unscaled) {
+                *entry += lift * a * b;
+            }
         }
     }
 }
@@ -86,6 +95,7 @@ fn is_definite(hessian: &ElementHessian) -> bool {
 #[cfg(test)]
 mod tests {
     use glam::DVec3;
+    use nalgebra::SMatrix;
 
     use super::*;
 

@@ -1,6 +1,6 @@
 //! The ladder on the whole curve: windows, widened where they must be, and the exact check.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use shapespline_criteria::Criterion;
 use shapespline_geometry::{BezierPart, DVec3, DVec4, length, normalize};
@@ -13,6 +13,7 @@ use crate::{
     element::Node,
     export::Pieces,
     rows::Rules,
+    search::Answer,
     segment::Demands,
     shape::off_chord,
     solve::{
@@ -25,13 +26,20 @@ use crate::{
 #[derive(Clone)]
 pub(crate) struct Found<'a> {
     pub(crate) plain: &'a Plain<'a>,
-    /// The segments that were solved for, with what was found at their ends; all others are the plain cubic's.
-    pub(crate) solved: BTreeMap<usize, [Node; 2]>,
+    /// The segments that were solved for; all others are the plain cubic's.
+    pub(crate) solved: BTreeMap<usize, Solved>,
     pub(crate) method: Method,
-    /// The criteria that hold a segment back, with the segment.
-    pub(crate) active: Vec<(Criterion, usize)>,
     /// Segments of which the exact check does not prove everything.
-    pub(crate) open: Vec<usize>,
+    pub(crate) open: BTreeSet<usize>,
+}
+
+/// A segment that was solved for.
+#[derive(Clone)]
+pub(crate) struct Solved {
+    /// What was found at its ends.
+    pub(crate) nodes: [Node; 2],
+    /// The criteria that hold it back.
+    pub(crate) binding: Vec<Criterion>,
 }
 
 /// The share of a cone's angle that the search stays within.
@@ -44,13 +52,8 @@ pub(crate) fn climb<'a>(
     options: &FairOptions,
     control: &mut Control<'_>,
 ) -> Found<'a> {
-    let mut found = Found {
-        plain,
-        solved: BTreeMap::new(),
-        method: Method::Cubic,
-        active: Vec::new(),
-        open: Vec::new(),
-    };
+    let mut found =
+        Found { plain, solved: BTreeMap::new(), method: Method::Cubic, open: BTreeSet::new() };
     let rules = rules(options);
     match options.energy {
         Energy::Parametric => found.open_windows(demands, rules, control),
@@ -83,7 +86,7 @@ const SHARES: [f64; 9] = [1.0 / 16.0, 0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.87
 /// at the nodes around the segments where it did not, and else at all. Returns the directions it has then.
 pub(crate) fn turn_nearly<'a>(
     free: &Found<'a>,
-    open: &[usize],
+    open: &BTreeSet<usize>,
     demands: &Demands<'_>,
     options: &FairOptions,
     control: &mut Control<'_>,
@@ -118,13 +121,9 @@ fn rules(options: &FairOptions) -> Rules {
     Rules { cones, exact_middles: false }
 }
 
-/// Free nodes beside a failing segment in the widest windows short of the whole curve: in these, too, all
-/// is put to the closed-form start if nothing else helps.
-const WIDE: usize = 16 * BESIDE;
-
 impl Found<'_> {
     /// The segments in which the plain cubic fails.
-    fn failing(&self, demands: &Demands<'_>) -> Vec<usize> {
+    pub(crate) fn failing(&self, demands: &Demands<'_>) -> Vec<usize> {
         let checker = demands.checker;
         let faults = checker.all_faults(|i| self.plain.legs(i));
         let mut failing: Vec<usize> = faults.into_iter().map(|(i, _)| i).collect();
@@ -163,7 +162,7 @@ impl Found<'_> {
 
     /// What is known at the ends of a segment.
     pub(crate) fn nodes(&self, demands: &Demands<'_>, i: usize) -> [Node; 2] {
-        self.solved.get(&i).copied().unwrap_or_else(|| self.plain_nodes(demands, i))
+        self.solved.get(&i).map_or_else(|| self.plain_nodes(demands, i), |own| own.nodes)
     }
 
     /// What is known at a node.
@@ -191,54 +190,16 @@ impl Found<'_> {
     pub(crate) fn pieces(&self, demands: &Demands<'_>, i: usize) -> Pieces {
         match self.solved.get(&i) {
             None => Pieces::plain(self.plain.legs(i)),
-            Some(&[start, end]) => {
+            Some(&Solved { nodes: [start, end], .. }) => {
                 let span = demands.span(i);
                 Pieces::of(&span, &span.legs(start, end), demands.units, ends_of(demands, i))
             }
         }
     }
 
-    /// Solves windows around the failing segments; those in which that fails, wider ones.
-    fn open_windows(&mut self, demands: &Demands<'_>, rules: Rules, control: &mut Control<'_>) {
-        let polygon = demands.checker.polygon();
-        let mut failing = self.failing(demands);
-        self.open.clone_from(&failing);
-        let count = polygon.nodes();
-        for beside in [BESIDE, 4 * BESIDE, WIDE, count] {
-            let mut unsolved = Vec::new();
-            for window in windows(&failing, count, polygon.is_closed(), beside) {
-                let whole = window.count == count;
-                let thorough = whole || beside == WIDE;
-                let mut chain =
-                    window.chain(demands, &|i| self.plain.node(i, demands.units), rules);
-                let own = || failing.iter().copied().filter(|&k| window.touches(k, count));
-                let Some(method) = solve(demands, &mut chain, thorough, control) else {
-                    unsolved.extend(own());
-                    continue;
-                };
-                quicken(demands, &mut chain, control);
-                finish(&mut chain, LAST, control);
-                let mut open = certify(demands, &mut chain, control);
-                let last = if open.is_empty() || !thorough {
-                    None
-                } else {
-                    fall_back(demands, &mut chain, &mut open, control)
-                };
-                if !open.is_empty() && !whole {
-                    unsolved.extend(own());
-                    continue;
-                }
-                self.put(demands, &chain, last.unwrap_or(method));
-                self.open.retain(|&k| !window.touches(k, count));
-                self.open.extend(open);
-            }
-            failing = unsolved;
-            if failing.is_empty() || control.is_over() {
-                break;
-            }
-        }
-        self.open.sort_unstable();
-        self.open.dedup();
+    /// The criteria that hold segments back, with the segments.
+    pub(crate) fn active(&self) -> impl Iterator<Item = (Criterion, usize)> {
+        self.solved.iter().flat_map(|(&i, own)| own.binding.iter().map(move |&c| (c, i)))
     }
 
     /// Turns the curve into the directions that are asked for, in windows around the nodes that have others. Whether
@@ -260,7 +221,7 @@ impl Found<'_> {
             {
                 return false;
             }
-            self.put(demands, &chain, Method::Elastic);
+            self.put(Answer::of(demands, &chain, Method::Elastic, Vec::new()));
         }
         true
     }
@@ -276,26 +237,21 @@ impl Found<'_> {
         }
         quicken(demands, &mut chain, control);
         finish_bending(&mut chain, control);
-        self.open = certify(demands, &mut chain, control);
-        let last = fall_back(demands, &mut chain, &mut self.open, control);
-        self.put(demands, &chain, last.unwrap_or(method));
+        let mut open = certify(demands, &mut chain, control);
+        let last = fall_back(demands, &mut chain, &mut open, control);
+        self.put(Answer::of(demands, &chain, last.unwrap_or(method), open));
     }
 
-    /// Takes over what a chain has found.
-    fn put(&mut self, demands: &Demands<'_>, chain: &Chain, method: Method) {
-        let segments = demands.checker.polygon().segments();
-        for k in 0..chain.segments.len() {
-            let i = index(chain, k, segments);
-            self.solved.insert(i, chain.ends(k).map(|j| chain.nodes[j]));
-            self.active.retain(|&(_, segment)| segment != i);
-            self.active.extend(chain.binding(k).into_iter().map(|criterion| (criterion, i)));
-        }
-        self.method = self.method.max(method);
+    /// Takes over what was found.
+    pub(crate) fn put(&mut self, answer: Answer) {
+        self.solved.extend(answer.segments);
+        self.open.extend(answer.open);
+        self.method = self.method.max(answer.method);
     }
 }
 
 /// Index along the curve of a segment of a chain.
-fn index(chain: &Chain, k: usize, segments: usize) -> usize {
+pub(crate) fn index(chain: &Chain, k: usize, segments: usize) -> usize {
     (chain.first + k) % segments
 }
 
@@ -316,7 +272,11 @@ fn deviates(demands: &Demands<'_>, i: usize, parts: &[BezierPart]) -> bool {
 
 /// The exact check of what a chain will export. Where it does not prove everything, the barrier is
 /// raised, which widens the margins. Returns what stays open.
-fn certify(demands: &Demands<'_>, chain: &mut Chain, control: &mut Control<'_>) -> Vec<usize> {
+pub(crate) fn certify(
+    demands: &Demands<'_>,
+    chain: &mut Chain,
+    control: &mut Control<'_>,
+) -> Vec<usize> {
     let mut open = unproved(demands, chain);
     for weight in [10.0, 100.0, 1000.0].map(|factor| factor * LAST) {
         if open.is_empty() || control.is_over() || !chain.all_hold() {
@@ -330,7 +290,7 @@ fn certify(demands: &Demands<'_>, chain: &mut Chain, control: &mut Control<'_>) 
 
 /// The last rungs, for the whole curve: nodes that fail are put where the closed-form start has them, and
 /// improved from there; or all are; or all stay there. Keeps the first that leaves least open.
-fn fall_back(
+pub(crate) fn fall_back(
     demands: &Demands<'_>,
     chain: &mut Chain,
     open: &mut Vec<usize>,

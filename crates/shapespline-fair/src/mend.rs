@@ -23,15 +23,34 @@ const SCALES: [Scales; 3] = [
     Scales { tilt: 0.5, handle: 0.1, curvature: 0.3 },
 ];
 
-/// Failing segments are restarted with none, one … nodes more on each side.
-const PADS: usize = 4;
+/// Failing segments are restarted with one, two … nodes more on each side.
+const PADS: Range<usize> = 1..4;
 
 /// Nodes beside a restart that may move until it settles.
-const MARGIN: usize = 6;
+const MARGIN: usize = 3;
+
+/// A restart is taken for better where its objective is less by this share: what rounding decides would depend on
+/// the directions of the axes.
+const BETTER: f64 = 3e-4;
+
+/// How much restarts are worth.
+struct Effort {
+    /// Steps after which one that does not hold is given up.
+    steps: usize,
+    /// Weights of the barrier while it settles, each with the decrement that ends it.
+    settling: &'static [(f64, f64)],
+    /// Whether all are tried, or only those up to the first that goes on at a good speed.
+    all: bool,
+}
+
+/// Where nothing but a feasible part is looked for: restarts that come to hold mostly take four to twelve steps.
+const QUICK: Effort = Effort { steps: 16, settling: &[(0.1, 0.1)], all: false };
+/// Where parts are compared: what is better must not depend on how far they have settled.
+const THOROUGH: Effort = Effort { steps: 40, settling: &[(0.1, 1e-2), (0.01, 1e-3)], all: true };
 
 /// Segments in runs: the nodes at them, with some more on both sides. In a ring a run may go on beyond
 /// the last node, and begins below it.
-fn clusters(chain: &Chain, segments: &[usize], pad: usize) -> Vec<Range<usize>> {
+pub(crate) fn clusters(chain: &Chain, segments: &[usize], pad: usize) -> Vec<Range<usize>> {
     let mut runs: Vec<Range<usize>> = Vec::new();
     let count = chain.nodes.len();
     let ring = chain.is_ring();
@@ -67,9 +86,9 @@ fn clusters(chain: &Chain, segments: &[usize], pad: usize) -> Vec<Range<usize>> 
 
 /// Mends all that fails, as far as that goes.
 pub(crate) fn mend(demands: &Demands<'_>, chain: &mut Chain, control: &mut Control<'_>) {
-    for pad in 0..PADS {
+    for pad in PADS {
         for nodes in clusters(chain, &chain.failing(), pad) {
-            if let Some((_, part)) = best_restart(demands, chain, &nodes, control) {
+            if let Some((_, part)) = best_restart(demands, chain, &nodes, &QUICK, control) {
                 put(demands, chain, &part);
             }
         }
@@ -88,9 +107,10 @@ pub(crate) fn refresh(
 ) {
     for pad in 0..2 {
         for nodes in clusters(chain, segments, pad) {
-            let (value, part) = settle(demands, chain, &part(chain, nodes.clone()), control);
-            let best = best_restart(demands, chain, &nodes, control);
-            let best = best.filter(|best| best.1.all_hold() && best.0 < value);
+            let (value, part) =
+                settle(demands, chain, &part(chain, nodes.clone()), &THOROUGH, control);
+            let best = best_restart(demands, chain, &nodes, &THOROUGH, control);
+            let best = best.filter(|best| best.1.all_hold() && is_better(best.0, value));
             put(demands, chain, best.as_ref().map_or(&part, |best| &best.1));
         }
     }
@@ -101,27 +121,36 @@ fn best_restart(
     demands: &Demands<'_>,
     chain: &Chain,
     nodes: &Range<usize>,
+    effort: &Effort,
     control: &mut Control<'_>,
 ) -> Option<(f64, Chain)> {
     let mut best: Option<(f64, Chain)> = None;
     for scales in SCALES {
         let mut part = restart(demands, chain, nodes.clone(), scales);
         let barrier = Barrier { weight: 10.0, penalty: Some(1e4), protects: true };
-        let limits = Limits { decrement: 1e-3, steps: 40, until_all_hold: true };
+        let limits = Limits { decrement: 1e-3, steps: effort.steps, until_all_hold: true };
         part.minimise(&barrier, limits, control);
         if !part.all_hold() {
             continue;
         }
-        let (value, settled) = settle(demands, chain, &part, control);
-        if best.as_ref().is_none_or(|best| value < best.0) {
+        let (value, settled) = settle(demands, chain, &part, effort, control);
+        if best.as_ref().is_none_or(|best| is_better(value, best.0)) {
             best = Some((value, settled));
+        }
+        let stops = |part: &Chain| (0..part.segments.len()).any(|k| part.nearly_stops(k));
+        if !effort.all && best.as_ref().is_some_and(|(_, part)| !stops(part)) {
+            break;
         }
     }
     best
 }
 
+fn is_better(value: f64, than: f64) -> bool {
+    value < (1.0 - BETTER) * than
+}
+
 /// Puts a part back into the chain that it was taken from.
-fn put(demands: &Demands<'_>, chain: &mut Chain, part: &Chain) {
+pub(crate) fn put(demands: &Demands<'_>, chain: &mut Chain, part: &Chain) {
     let at = begin(demands, chain, part);
     let (nodes, segments) = (chain.nodes.len(), chain.segments.len());
     for (j, node) in part.nodes.iter().enumerate() {
@@ -140,7 +169,7 @@ fn begin(demands: &Demands<'_>, chain: &Chain, part: &Chain) -> usize {
 }
 
 /// The part of a chain around some nodes, which may move. In a ring they may go on beyond the last.
-fn part(chain: &Chain, nodes: Range<usize>) -> Chain {
+pub(crate) fn part(chain: &Chain, nodes: Range<usize>) -> Chain {
     let count = chain.nodes.len();
     let (from, to) = if !chain.is_ring() {
         (nodes.start.saturating_sub(1), (nodes.end + 1).min(count))
@@ -200,6 +229,7 @@ fn settle(
     demands: &Demands<'_>,
     chain: &Chain,
     mended: &Chain,
+    effort: &Effort,
     control: &mut Control<'_>,
 ) -> (f64, Chain) {
     let (at, count) = (begin(demands, chain, mended), chain.nodes.len());
@@ -212,7 +242,7 @@ fn settle(
     };
     let mut part = part(chain, nodes);
     put(demands, &mut part, mended);
-    for (weight, decrement) in [(0.1, 1e-2), (0.01, 1e-3)] {
+    for &(weight, decrement) in effort.settling {
         // Other clusters nearby may still fail.
         let penalty = if part.all_hold() { None } else { Some(10.0) };
         let barrier = Barrier { weight, penalty, protects: true };

@@ -6,6 +6,9 @@
 //! the whole curve: their Hessians are multiplied by a factor. So one hard spot does not hold up the
 //! others, and where all are damped alike it is backtracking. (After the structured trust regions of A. R.
 //! Conn, N. Gould, A. Sartenaer, P. L. Toint, SIAM J. Optim. 6 (1996) 674–703.)
+//!
+//! The elastic phase leaves the curvature of the conditions out (Gauss and Newton's matrix): as many steps, none
+//! of which is indefinite.
 
 use glam::DVec3;
 use shapespline_banded::{Block, BlockCholesky};
@@ -18,7 +21,7 @@ use crate::{
     element::Node,
     energy,
     legs::{ElementGradient, ElementHessian, LegTerms},
-    shape::Shape,
+    shape::{Gradient, Shape},
 };
 
 /// Memory of Newton's steps.
@@ -37,7 +40,20 @@ pub(crate) struct Workspace {
     flagged: Vec<bool>,
     values: Vec<f64>,
     trial: Vec<f64>,
+    /// Values of all conditions, and after a step.
+    margins: Vec<f64>,
+    trial_margins: Vec<f64>,
+    /// What the step knew of each condition.
+    terms: Vec<Term>,
     before: Vec<Node>,
+}
+
+/// What a step knows of a condition: its gradient, the primal multiplier and the weight of the gradient's square.
+#[derive(Debug, Clone, Copy)]
+struct Term {
+    gradient: Gradient,
+    primal: f64,
+    stiffness: f64,
 }
 
 /// When to stop.
@@ -76,9 +92,9 @@ impl Chain {
         self.choose_quadrature();
         self.kept.clear();
         self.keep_what_holds(barrier);
-        self.evaluate(barrier, &mut w.values);
+        self.evaluate(barrier, &mut w.values, &mut w.margins);
         self.multipliers.resize(self.rows.len(), f64::NAN);
-        self.complete_multipliers(barrier);
+        self.complete_multipliers(barrier, &w.margins);
         w.damping.clear();
         w.damping.resize(self.segments.len(), 0.0);
         let unit: f64 = self.segments.iter().map(|segment| segment.weight).sum();
@@ -98,9 +114,11 @@ impl Chain {
             if renews {
                 self.choose_quadrature();
                 self.keep_what_holds(barrier);
-                self.evaluate(barrier, &mut w.values);
+                self.evaluate(barrier, &mut w.values, &mut w.margins);
             }
-            if decrement <= limits.decrement * unit {
+            // What damping holds back is not reached yet.
+            let damping = w.damping.iter().fold(0.0f64, |most, &d| most.max(d));
+            if (1.0 + damping) * decrement <= limits.decrement * unit {
                 converged = true;
                 break;
             }
@@ -109,25 +127,23 @@ impl Chain {
         converged
     }
 
-    fn evaluate(&self, barrier: &Barrier, values: &mut Vec<f64>) {
+    fn evaluate(&self, barrier: &Barrier, values: &mut Vec<f64>, margins: &mut Vec<f64>) {
         values.clear();
-        values.extend((0..self.segments.len()).map(|k| self.value(k, barrier)));
+        margins.clear();
+        values.extend((0..self.segments.len()).map(|k| self.value(k, barrier, margins)));
     }
 
     /// Gives rows without a multiplier their primal one.
-    fn complete_multipliers(&mut self, barrier: &Barrier) {
-        let mut multipliers = std::mem::take(&mut self.multipliers);
-        for k in 0..self.segments.len() {
-            self.each_row(k, &self.legs(k), |i, z| {
-                let barrier = barrier.of(self.kept[i]);
-                multipliers[i] = if multipliers[i].is_nan() {
-                    barrier.multiplier(z)
-                } else {
-                    barrier.safeguarded(z, multipliers[i])
-                };
-            });
+    fn complete_multipliers(&mut self, barrier: &Barrier, margins: &[f64]) {
+        let rows = self.multipliers.iter_mut().zip(margins).zip(&self.kept);
+        for ((multiplier, &z), &kept) in rows {
+            let barrier = barrier.of(kept);
+            *multiplier = if multiplier.is_nan() {
+                barrier.multiplier(z)
+            } else {
+                barrier.safeguarded(z, *multiplier)
+            };
         }
-        self.multipliers = multipliers;
     }
 
     /// Takes one step. The decrement `−gᵀΔ`, or nothing where no step is to be had.
@@ -168,10 +184,11 @@ impl Chain {
             {
                 *node = old.plus(*step);
             }
-            self.evaluate(barrier, &mut w.trial);
+            self.evaluate(barrier, &mut w.trial, &mut w.trial_margins);
             if is_good(decrement, w) {
                 relieve(w);
                 std::mem::swap(&mut w.values, &mut w.trial);
+                std::mem::swap(&mut w.margins, &mut w.trial_margins);
                 return Some(decrement);
             }
             self.blame(w);
@@ -222,37 +239,48 @@ impl Chain {
     fn linearise(&self, barrier: &Barrier, w: &mut Workspace) {
         w.gradients.clear();
         w.hessians.clear();
+        w.terms.clear();
         for k in 0..self.segments.len() {
-            let (g, h) = self.element(k, barrier);
+            let (g, h) = self.element(k, barrier, &w.margins, &mut w.terms);
             w.gradients.push(g);
             w.hessians.push(h);
         }
     }
 
     /// Gradient and Hessian of a segment.
-    fn element(&self, k: usize, barrier: &Barrier) -> (ElementGradient, ElementHessian) {
+    fn element(
+        &self,
+        k: usize,
+        barrier: &Barrier,
+        margins: &[f64],
+        known: &mut Vec<Term>,
+    ) -> (ElementGradient, ElementHessian) {
         let segment = &self.segments[k];
         let legs = self.legs(k);
         let shape = Shape::new(segment, &self.rules, &legs);
         let mut terms = LegTerms::zero();
         let mut normals = [DVec3::ZERO; 7];
+        let exact = barrier.penalty.is_none() || barrier.protects;
         energy::add(segment.energy, &segment.span, &legs, self.rule(k), &mut terms);
         for i in self.ranges[k].clone() {
             let (row, own) = (&self.rows[i], self.multipliers[i]);
             let barrier = barrier.of(self.kept[i]);
-            let z = shape.value(row);
-            let primal = barrier.multiplier(z);
-            let stiffness = segment.weight * barrier.stiffness(z, own);
+            let z = margins[i];
+            let (primal, stiffness) = (barrier.multiplier(z), barrier.stiffness(z, own));
             if primal == 0.0 && own == 0.0 && stiffness == 0.0 {
+                known.push(Term { gradient: Gradient::ZERO, primal, stiffness });
                 continue;
             }
             let gradient = shape.gradient(row);
+            known.push(Term { gradient, primal, stiffness });
             let first = gradient.first;
             for (j, g) in gradient.legs.iter().enumerate() {
                 terms.gradient[first + j] -= *g * (segment.weight * primal);
             }
-            terms.add_square(first, &gradient.legs, stiffness);
-            shape.add_curvature(row, segment.weight * own, &mut normals, &mut terms);
+            terms.add_square(first, &gradient.legs, segment.weight * stiffness);
+            if exact {
+                shape.add_curvature(row, segment.weight * own, &mut normals, &mut terms);
+            }
         }
         terms.add_products(&normals);
         let mut hessian = terms.pull_back(&segment.span);
@@ -348,26 +376,12 @@ impl Chain {
     /// Moves the multipliers with the step that was taken.
     fn update_multipliers(&mut self, barrier: &Barrier, w: &Workspace) {
         for k in 0..self.segments.len() {
-            let segment = &self.segments[k];
-            let [start, end] = self.ends(k);
-            let old = segment.span.legs(w.before[start], w.before[end]);
-            let step = segment.span.step(w.direction[start], w.direction[end]);
-            let old = Shape::new(segment, &self.rules, &old);
-            let legs = self.legs(k);
-            let new = Shape::new(segment, &self.rules, &legs);
+            let [start, end] = self.ends(k).map(|i| w.direction[i]);
+            let step = self.segments[k].span.step(start, end);
             for i in self.ranges[k].clone() {
-                let row = &self.rows[i];
-                let barrier = barrier.of(self.kept[i]);
-                let (z, own) = (old.value(row), self.multipliers[i]);
-                let stiffness = barrier.stiffness(z, own);
-                let mut moved = barrier.multiplier(z);
-                if stiffness > 0.0 {
-                    let gradient = old.gradient(row);
-                    let along = &step[gradient.first..gradient.first + 3];
-                    moved -= stiffness
-                        * gradient.legs.iter().zip(along).map(|(g, s)| g.dot(*s)).sum::<f64>();
-                }
-                self.multipliers[i] = barrier.safeguarded(new.value(row), moved);
+                let Term { gradient, primal, stiffness } = w.terms[i];
+                let moved = primal - stiffness * gradient.along(&step);
+                self.multipliers[i] = barrier.of(self.kept[i]).safeguarded(w.margins[i], moved);
             }
         }
     }

@@ -19,9 +19,21 @@ pub(crate) struct Shape<'a> {
 }
 
 /// Gradient of a condition with respect to the legs `first, first + 1, first + 2`.
+#[derive(Debug, Clone, Copy)]
 pub(crate) struct Gradient {
     pub(crate) first: usize,
     pub(crate) legs: [DVec3; 3],
+}
+
+impl Gradient {
+    pub(crate) const ZERO: Self = Self { first: 0, legs: [DVec3::ZERO; 3] };
+
+    /// Its product with a change of the legs.
+    pub(crate) fn along(&self, step: &Legs) -> f64 {
+        let [a, b, c] = self.legs;
+        let first = self.first;
+        a.dot(step[first]) + b.dot(step[first + 1]) + c.dot(step[first + 2])
+    }
 }
 
 impl<'a> Shape<'a> {

@@ -5,8 +5,7 @@ use crate::{
     barrier::Barrier,
     chain::Chain,
     control::Control,
-    energy,
-    mend::{mend, refresh, set_start, shorten},
+    mend::{clusters, mend, part, put, refresh, set_start, shorten},
     newton::Limits,
     segment::Demands,
     start::Scales,
@@ -15,6 +14,10 @@ use crate::{
 /// The elastic phase: weights of the barrier, and the penalty.
 const ELASTIC: [f64; 3] = [0.1, 0.01, 1e-3];
 const PENALTY: f64 = 10.0;
+
+/// Nodes beside failing segments that move in the elastic phase: what it leaves is brought down later, in the
+/// whole window.
+const NEAR: usize = 3;
 
 /// The last weight of the barrier: the energy is then within some 1 % of its infimum, and margins are
 /// ten times larger than at 1e−4.
@@ -26,9 +29,6 @@ const TIGHT: f64 = 1e-3;
 
 /// Searches for segments that nearly stop.
 const ROUNDS: usize = 4;
-
-/// Bending energy times length above which a segment nearly stops: half a turn evenly spread has π².
-const SLOW: f64 = 20.0;
 
 /// Finds a feasible chain (by all means if it is to be `thorough`), and brings its parametric energy down. The method that it took, or nothing
 /// where it takes a wider chain; the whole curve always has an answer.
@@ -42,11 +42,15 @@ pub(crate) fn solve(
     let is_tight = is_tight(chain);
     if !is_tight {
         control.begin(Phase::Elastic, chain.failing().len());
-        for weight in ELASTIC {
-            chain.choose_changes();
-            let barrier = Barrier { weight, penalty: Some(PENALTY), protects: false };
-            let limits = Limits { decrement: 0.01 * weight, steps: 60, until_all_hold: false };
-            chain.minimise(&barrier, limits, control);
+        for nodes in clusters(chain, &chain.failing(), NEAR) {
+            let mut part = part(chain, nodes);
+            for weight in ELASTIC {
+                part.choose_changes();
+                let barrier = Barrier { weight, penalty: Some(PENALTY), protects: false };
+                let limits = Limits { decrement: 0.1 * weight, steps: 60, until_all_hold: false };
+                part.minimise(&barrier, limits, control);
+            }
+            put(demands, chain, &part);
         }
     }
     chain.relax_speeds();
@@ -94,7 +98,7 @@ pub(crate) fn settle_nearby(chain: &mut Chain, energy: Energy, control: &mut Con
     }
     // Where the curve nearly stops it goes on to bend less.
     for k in 0..chain.segments.len() {
-        if is_slow(chain, k) {
+        if chain.nearly_stops(k) {
             chain.bend(k.saturating_sub(1)..(k + 2).min(chain.segments.len()));
         }
     }
@@ -119,7 +123,7 @@ pub(crate) fn quicken(demands: &Demands<'_>, chain: &mut Chain, control: &mut Co
     for _ in 0..ROUNDS {
         let slow: Vec<usize> = (0..chain.segments.len())
             .filter(|&k| chain.segments[k].energy == Energy::Parametric)
-            .filter(|&k| is_slow(chain, k))
+            .filter(|&k| chain.nearly_stops(k))
             .collect();
         if slow.is_empty() || control.is_over() {
             break;
@@ -228,10 +232,4 @@ fn start_all(demands: &Demands<'_>, chain: &mut Chain, shortens: bool) -> bool {
         }
     }
     false
-}
-
-/// Whether a segment nearly stops.
-fn is_slow(chain: &Chain, k: usize) -> bool {
-    let span = chain.segments[k].span;
-    energy::bending(&span, &chain.legs(k)) * span.length > SLOW
 }

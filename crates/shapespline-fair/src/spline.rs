@@ -1,6 +1,11 @@
 //! The curve.
 
-use std::{borrow::Cow, collections::BTreeMap, ops::ControlFlow};
+use std::{
+    borrow::Cow,
+    collections::BTreeMap,
+    ops::ControlFlow,
+    sync::{Mutex, PoisonError},
+};
 
 use shapespline_criteria::{
     Checker, Criteria, Criterion, CurveChecker, INTERPOLATION, ShapeReport, Tolerances,
@@ -13,7 +18,7 @@ use shapespline_geometry::{
 use crate::{
     Constraints, Diagnostics, Energy, FairOptions, Fit, FitError, Method, Status, Step,
     constraints::Part,
-    control::Control,
+    control::{Control, Watch},
     cubic::{Plain, sum},
     element::Node,
     energy,
@@ -101,14 +106,15 @@ impl FairSpline {
         Self::fit_with(polygon, options, &mut |_| ControlFlow::Continue(()))
     }
 
-    /// As [`FairSpline::fit`], with a monitor that sees every Newton step and can end the search.
+    /// As [`FairSpline::fit`], with a monitor that sees every Newton step and can end the search. On long curves
+    /// the steps come from all threads, one at a time, those of one window in order.
     ///
     /// # Errors
     /// As [`FairSpline::fit`].
     pub fn fit_with(
         polygon: DataPolygon,
         options: &FairOptions,
-        monitor: &mut dyn FnMut(&Step) -> ControlFlow<()>,
+        monitor: &mut (dyn FnMut(&Step) -> ControlFlow<()> + Send),
     ) -> Result<Fit, FitError> {
         options.validate()?;
         let constraints = &options.constraints;
@@ -121,7 +127,10 @@ impl FairSpline {
             constraints.refuse_conflicts(&checker, &runs)?;
             straight = runs.segments;
         }
-        let mut control = Control::new(options.max_iterations, monitor);
+        let monitor = Mutex::new(monitor);
+        let ask = |step: &Step| monitor.lock().unwrap_or_else(PoisonError::into_inner)(step);
+        let watch = Watch::new(&ask);
+        let mut control = Control::new(options.max_iterations, &watch);
         let (boundary, energy) = (polygon.boundary(), options.energy);
         let mut whole = Whole::of(&polygon);
         for part in constraints.parts(&polygon)? {
@@ -363,7 +372,7 @@ impl Whole {
         let [energy, energy_cubic] = energies(&demands, &found, options.energy);
         self.energy += energy;
         self.energy_cubic += energy_cubic;
-        self.active.extend(found.active.iter().map(|&(criterion, i)| (criterion, place(i))));
+        self.active.extend(found.active().map(|(criterion, i)| (criterion, place(i))));
         if let Cow::Borrowed(_) = part.polygon {
             let proved = found.open.is_empty();
             self.report = proved.then(|| checker.report_of(&[], |i| plain.legs(i)));
@@ -394,7 +403,7 @@ fn energies(demands: &Demands<'_>, found: &Found<'_>, energy: Energy) -> [f64; 2
         Energy::Bending => of(i, found.plain_nodes(demands, i)),
     };
     let cubic = sum(demands.checker.polygon().segments(), plain);
-    let more = found.solved.iter().map(|(&i, &nodes)| of(i, nodes) - plain(i)).sum::<f64>();
+    let more = found.solved.iter().map(|(&i, own)| of(i, own.nodes) - plain(i)).sum::<f64>();
     [cubic + more, cubic]
 }
 

@@ -73,6 +73,14 @@ impl Window {
         (segment + nodes - self.start) % nodes < self.count
     }
 
+    /// Whether no held node lies between two windows of a curve with so many nodes.
+    pub(crate) fn meets(self, other: Self, nodes: usize, closed: bool) -> bool {
+        let from = |a: Self, b: Self| {
+            (closed || a.start <= b.start) && (b.start + nodes - a.start) % nodes <= a.count
+        };
+        from(self, other) || from(other, self)
+    }
+
     /// The chain of a window, as some curve has it at its nodes.
     pub(crate) fn chain(
         self,

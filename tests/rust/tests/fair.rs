@@ -205,6 +205,39 @@ fn the_report_of_a_fit_is_that_of_its_curve() {
     }
 }
 
+/// Windows are solved on all threads: the same curve, history and counts, for any number of them, and where steps
+/// are limited, one window after the other. The monitor is asked from any thread.
+#[test]
+fn long_curves_do_not_depend_on_the_number_of_threads() {
+    let at = |k: u32| {
+        let t = 0.15 * f64::from(k);
+        let kink = if k % 700 == 350 { 0.05 } else { 0.0 };
+        DVec3::new(t.cos() + kink, t.sin() - 0.5 * kink, 0.35 * t)
+    };
+    let polygon = natural((0..9000).map(at).collect(), Dimension::Three);
+    let on = |threads: usize, options: &FairOptions| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| FairSpline::fit(polygon.clone(), options).unwrap())
+    };
+    let free = FairOptions::default();
+    let limited = FairOptions { max_iterations: Some(usize::MAX), ..free.clone() };
+    let one = on(1, &free);
+    assert_eq!(one.diagnostics.status, Status::Solved, "{}", one.report);
+    assert!(one.history.len() >= 2 * 12, "{}", one.history.len());
+    for other in [on(2, &free), on(5, &free), on(3, &limited)] {
+        assert_eq!(other.curve, one.curve);
+        assert_eq!(other.diagnostics, one.diagnostics);
+        assert_eq!(other.history, one.history);
+    }
+    let mut seen = 0;
+    let fit = FairSpline::fit_with(polygon.clone(), &free, &mut |_| {
+        seen += 1;
+        if seen < 50 { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+    });
+    assert_eq!(fit.unwrap().diagnostics.status, Status::Interrupted);
+    assert!((50..200).contains(&seen), "{seen}");
+}
+
 /// A walk whose steps have lengths over so many decades.
 fn walk(seed: usize, decades: f64, dimension: Dimension) -> DataPolygon {
     let mut random = Random::new(seed as u64);
