@@ -35,9 +35,7 @@ def exports(curve, path):
     yield "json", _files.read_curve(path).curve
     yield "bezier", ss.PiecewiseBezier(curve.bezier, u)
     yield "bpoly", BPoly(curve.bezier.swapaxes(0, 1), u)
-    if not isinstance(curve, ss.FairSpline):
-        # Several pieces per segment are judged as float64 has them: see the page on limits.
-        yield "15 digits", ss.PiecewiseBezier(rounded(curve.bezier), u)
+    yield "15 digits", ss.PiecewiseBezier(rounded(curve.bezier), u)
     if isinstance(curve, ss.TensionSpline):
         # SciPy's forms are run through in the curve's own parameter; these are their images.
         ppoly, bspline = (ss.PiecewiseBezier(curve.bezier, u),) * 2

@@ -291,6 +291,16 @@ def test_any_json_is_judged_or_refused_in_one_line(entries, kind, cut, tmp_path_
     refused_in_one_line(status, error, folder)
 
 
+def test_parameters_that_are_no_array(tmp_path):
+    points, curve = tmp_path / "points.csv", tmp_path / "curve.json"
+    points.write_text("0,0\n1,1\n2,2\n", encoding="utf-8")
+    for kind in ("bezier", "bspline", "power"):
+        curve.write_text(json.dumps(GOOD | {"type": kind, "parameters": 0}), encoding="utf-8")
+        status, error = quiet("check", points, curve)
+        assert status == 2
+        assert "'parameters' must be an array of numbers" in error
+
+
 def refused_in_one_line(status, error, path):
     """Check that bad input is one short line; else a line may say how the file was read."""
     assert status in (0, 1, 2)

@@ -537,6 +537,8 @@ def _check_shape(
     collinearity: float | None,
     tolerance: float | None,
     of_fit: bool,
+    corners: Sequence[int] | float | None,
+    straight: Sequence[int],
 ) -> ShapeReport: ...
 def _curve_inflections(
     curve: PiecewiseBezier, direction: ArrayLike | None

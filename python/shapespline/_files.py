@@ -65,6 +65,9 @@ class CurveFile:
     shape: str
     #: What its fit was asked for, by the names of the options of a check; none of any other curve.
     fit_options: dict[str, Any] | None
+    #: Points at which the curve has corners, and segments on which it is straight by construction.
+    corners: list[int]
+    straight: list[int]
 
 
 def _integer(digits: str) -> int | float:
@@ -193,12 +196,22 @@ def _fit_options(document: _Document) -> dict[str, Any] | None:
     return given
 
 
+def _indices(document: _Document, key: str) -> list[int]:
+    """Return an entry that lists indices, if it is there."""
+    given = document.entries.get(key, [])
+    if not isinstance(given, list) or not all(type(i) is int and i >= 0 for i in given):
+        document.fail(f"'{key}' must be a list of indices, counted from 0", key)
+    return sorted(given)
+
+
 def read_curve(path: Path) -> CurveFile:
     """Read a curve from JSON: Bézier pieces, a B-spline or a piecewise polynomial in powers."""
     document = _Document(path)
     document.check_format()
     kind = _type(document)
     parameters = document.optional("parameters")
+    if parameters is not None and not parameters.ndim:
+        document.fail("'parameters' must be an array of numbers", "parameters")
     weights = document.optional("weights")
     try:
         if kind == "bspline":
@@ -222,7 +235,16 @@ def read_curve(path: Path) -> CurveFile:
     shape = document.entries.get("shape", "polygon")
     if shape not in ("polygon", "monotone"):
         document.fail(f"'shape' must be 'polygon' or 'monotone', got {_shown(shape)}", "shape")
-    return CurveFile(path, curve, parameters, _boundary(document), shape, _fit_options(document))
+    return CurveFile(
+        path,
+        curve,
+        parameters,
+        _boundary(document),
+        shape,
+        _fit_options(document),
+        _indices(document, "corners"),
+        _indices(document, "straight"),
+    )
 
 
 def write_curve(path: Path, curve: Any) -> None:
@@ -244,7 +266,9 @@ def write_curve(path: Path, curve: Any) -> None:
             if isinstance(ends, Tangents)
             else ends
         )
-        if not isinstance(curve, FairSpline):
+        if isinstance(curve, FairSpline):
+            entries["corners"], entries["straight"] = list(curve.corners), list(curve.straight)
+        else:
             entries["tension"] = curve.tension.tolist()
         if (options := curve._fit_options()) is not None:
             entries["fit_options"] = options

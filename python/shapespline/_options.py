@@ -14,7 +14,16 @@ from shapespline._io import LONGEST, shortened
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-__all__ = ["BOUNDARIES", "Parser", "add_closing", "add_fit_options", "add_points", "names", "real"]
+__all__ = [
+    "BOUNDARIES",
+    "Parser",
+    "add_closing",
+    "add_corners",
+    "add_fit_options",
+    "add_points",
+    "names",
+    "real",
+]
 
 BOUNDARIES = ["zero-curvature", "natural", "periodic", "circular"]
 
@@ -112,6 +121,17 @@ def add_closing(group: argparse._ActionsContainer, otherwise: str) -> None:
     )
 
 
+def add_corners(group: argparse._ActionsContainer, what: str, otherwise: str) -> None:
+    """Give the group the option of corners."""
+    group.add_argument(
+        "--corners",
+        type=_corners,
+        metavar="I,…",
+        help=f"{what}, by index from 0, or as a number with a decimal point the turning angle "
+        f"(radians) from which on points are corners (default: {otherwise})",
+    )
+
+
 def add_fit_options(parser: argparse.ArgumentParser, methods: Iterable[str]) -> None:
     """Give the parser the arguments of ``shapespline fit``."""
     add_points(parser)
@@ -201,13 +221,7 @@ def add_fit_options(parser: argparse.ArgumentParser, methods: Iterable[str]) -> 
         choices=["parametric", "bending"],
         help="fair: what is minimised (default: parametric)",
     )
-    curve.add_argument(
-        "--corners",
-        type=_corners,
-        metavar="I,…",
-        help="fair: points at which there are corners, by index from 0, or as a number with a "
-        "decimal point the turning angle (radians) from which on points are corners",
-    )
+    add_corners(curve, "fair: points at which there are corners", "none")
     curve.add_argument(
         "--max-deviation",
         type=real,

@@ -8,12 +8,12 @@ import numpy as np
 
 from shapespline import _core
 from shapespline._convert import _is_array, piecewise
-from shapespline._core import SpaceCurve, TensionSpline
+from shapespline._core import FairSpline, SpaceCurve, TensionSpline
 from shapespline._errors import InputError
 from shapespline._pickling import sealed
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Sequence
 
     from numpy.typing import ArrayLike, NDArray
 
@@ -44,6 +44,7 @@ def check_shape(
     coplanarity: float | None = None,
     collinearity: float | None = None,
     tolerance: float | None = None,
+    corners: Sequence[int] | float | None = None,
 ) -> ShapeReport:
     """Check whether a curve, whoever made it, keeps the shape of the points it passes through.
 
@@ -87,6 +88,9 @@ def check_shape(
         unit chords span a smaller volume as coplanar. The curve may pass the points at this
         distance over their extent (1e-9 at least). Default 1e-9. A shape-preserving curve of this
         module through its own points has its own defaults: the options that it was fitted with.
+    corners : sequence of int or float, optional
+        Points at which the curve is to have corners, as for `FairSpline`: nothing is asked there.
+        Default none; of a `FairSpline` its own.
 
     Returns
     -------
@@ -140,7 +144,7 @@ def check_shape(
     if not (parameters is None or isinstance(parameters, (str, float, int))):
         parameters = _core._floats("parameters", parameters)
     chosen: Any = parameters
-    ours = isinstance(curve, SpaceCurve) and boundary is None
+    ours = isinstance(curve, SpaceCurve) and boundary is None and corners is None
     if ours and _is_own(points, curve, parameters, closed):
         report: ShapeReport = curve.check(
             criteria,
@@ -152,6 +156,9 @@ def check_shape(
         return report
     if isinstance(curve, TensionSpline):
         _at_its_points(curve, parameters)
+    straight: tuple[int, ...] = ()
+    if isinstance(curve, FairSpline) and corners is None and _is_at(points, curve, closed):
+        corners, straight = curve.corners, curve.straight
     if _is_array(curve):
         curve = _core._floats("curve", curve)
         chosen = _breaks(points, curve, parameters, closed)
@@ -169,15 +176,22 @@ def check_shape(
         collinearity,
         tolerance,
         False,
+        corners,
+        straight,
     )
+
+
+def _is_at(points: Floats, curve: SpaceCurve, closed: bool) -> bool:
+    """Whether these are the points that the curve was made for."""
+    own = curve.points
+    if closed and len(points) + 1 == len(own):
+        own = own[:-1] if curve.boundary == "periodic" else own
+    return np.array_equal(points, own)
 
 
 def _is_own(points: Floats, curve: SpaceCurve, parameters: Any, closed: bool) -> bool:
     """Whether these are the points that the curve was made for, at the same parameters."""
-    own = curve.points
-    if closed and len(points) + 1 == len(own):
-        own = own[:-1] if curve.boundary == "periodic" else own
-    if not np.array_equal(points, own) or (closed and curve.boundary != "periodic"):
+    if not _is_at(points, curve, closed) or (closed and curve.boundary != "periodic"):
         return False
     if parameters is None:
         return True

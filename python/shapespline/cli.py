@@ -33,6 +33,7 @@ from shapespline._options import (
     BOUNDARIES,
     Parser,
     add_closing,
+    add_corners,
     add_fit_options,
     add_points,
     names,
@@ -100,7 +101,7 @@ def _located(
 ) -> Exception:
     """Return the error as one about the points, about the curve, or about an option."""
     if (
-        error.argument in (*CHECKED, "boundary", "closed", "repeated")
+        error.argument in (*CHECKED, "boundary", "closed", "repeated", "corners")
         and getattr(options, error.argument) is not None
     ):
         return UsageError(str(error))
@@ -158,6 +159,8 @@ def _check(options: argparse.Namespace) -> int:
                     asked["collinearity"],
                     asked["tolerance"],
                     curve.fit_options is not None,
+                    curve.corners if options.corners is None else options.corners,
+                    curve.straight,
                 )
     except shapespline.InputError as error:
         raise _located(data, curve, options, error) from None
@@ -209,6 +212,7 @@ def _add_check(commands: argparse._SubParsersAction[Parser]) -> None:
         help="what stands in for the missing chords at the ends (default: what CURVE.json says)",
     )
     add_closing(parser, "as CURVE.json has it")
+    add_corners(parser, "points at which there are corners", "those of CURVE.json")
     for name, default, what in (
         ("resolution", 0, "accuracy of the points, in their units"),
         ("coplanarity", 0.2, "sine of the largest angle between binormal and plane normal"),

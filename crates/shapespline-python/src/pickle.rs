@@ -23,7 +23,7 @@ use crate::{
 };
 
 /// Raised whenever the layout changes; bytes of other versions are refused, not guessed at.
-const VERSION: u8 = 10;
+const VERSION: u8 = 11;
 
 /// Length of the checksum, a CRC-32 of everything before it.
 const CHECKSUM: usize = 4;
@@ -220,10 +220,12 @@ pub(crate) fn write_report(
     let bytes = postcard::to_extend(&own, bytes)?;
     let bytes = match &report.subject {
         Subject::Own(curve) => write_curve(curve, None, bytes)?,
-        Subject::Other { polygon, curve, map, interpolation } => {
+        Subject::Other { polygon, curve, map, interpolation, corners, straight } => {
             let polygon =
                 (polygon.points(), polygon.parameters(), polygon.boundary(), polygon.dimension());
-            postcard::to_extend(&(polygon, parts(curve), map.as_ref(), interpolation), bytes)?
+            let special = (corners, straight);
+            let other = (polygon, parts(curve), map.as_ref(), interpolation, special);
+            postcard::to_extend(&other, bytes)?
         }
     };
     postcard::to_extend(&(&report.report, report.asked), bytes)
@@ -234,16 +236,24 @@ fn read_subject(bytes: &mut &[u8]) -> PyResult<Subject> {
         return Ok(Subject::Own(read_curve(bytes)?.0));
     }
     type Polygon = (Vec<DVec3>, Vec<f64>, Boundary, Dimension);
-    let (polygon, curve, map, interpolation): (Polygon, Parts, InputMap, f64) = take(bytes)?;
+    type Special = (Vec<usize>, Vec<usize>);
+    let (polygon, curve, map, interpolation, (corners, straight)): (
+        Polygon,
+        Parts,
+        InputMap,
+        f64,
+        Special,
+    ) = take(bytes)?;
     let (points, parameters, boundary, dimension) = polygon;
     let parameters = Parametrization::Given(parameters);
     let polygon = DataPolygon::with_dimension(points, dimension, &parameters, boundary);
     let polygon = Arc::new(polygon.map_err(damaged)?);
-    if !map.fits(polygon.points().len()) {
+    let beyond = |k: &usize| *k >= polygon.segments();
+    if !map.fits(polygon.points().len()) || corners.iter().chain(&straight).any(beyond) {
         return Err(damaged("lengths do not agree"));
     }
     let (curve, map) = (Arc::new(assemble(curve)?), Arc::new(map));
-    Ok(Subject::Other { polygon, curve, map, interpolation })
+    Ok(Subject::Other { polygon, curve, map, interpolation, corners, straight })
 }
 
 /// A piecewise Bézier curve: breaks, homogeneous control points, degree, rational, dimension.

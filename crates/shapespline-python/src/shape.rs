@@ -17,6 +17,7 @@ use shapespline::{
 
 use crate::{
     asked::{Asked, Given},
+    constraints,
     error::{Value, input_error, invalid, must, plain_error, subject_error},
     fit::CurveInput,
     input::{Numbers, Points, numbers},
@@ -47,11 +48,14 @@ pub(crate) fn _check_shape(
     #[pyo3(from_py_with = options::optional_collinearity)] collinearity: Option<f64>,
     #[pyo3(from_py_with = options::optional_tolerance)] tolerance: Option<f64>,
     of_fit: bool,
+    corners: Option<&Bound<'_, PyAny>>,
+    straight: Vec<usize>,
 ) -> PyResult<ShapeReport> {
     let asked = Given { criteria, resolution, coplanarity, collinearity, tolerance };
     let asked = Asked::default_of(of_fit).with(asked)?;
     let curve = Arc::clone(&curve.get().curve);
     let Points { points, dimension } = points;
+    let special = constraints::Given::new(corners, None, None, false, dimension)?;
     if dimension != curve.dimension() {
         let [points, curve] = [dimension, curve.dimension()].map(Dimension::len);
         return Err(subject_error(CurveError::Dimension { points, curve }));
@@ -89,8 +93,18 @@ pub(crate) fn _check_shape(
         polygon(kept.points.clone(), boundary)
     };
     let polygon = detached(py, count, make).map_err(|error| input_error(map.in_input(error)))?;
+    let special = special.at_nodes(&polygon, &map).and_then(|special| {
+        special.validate(&polygon)?;
+        Ok(special)
+    });
+    let corners = special.map_err(input_error)?.corners;
+    // Segments of the input, ascending, that are segments of the polygon.
+    let segments: Vec<usize> = (0..polygon.segments()).map(|i| map.segment(i)).collect();
+    let own = |segment: &usize| segments.binary_search(segment).ok();
+    let straight = straight.iter().filter_map(own).collect();
     let interpolation = INTERPOLATION.max(asked.tolerances.zero);
-    let subject = Subject::Other { polygon: Arc::new(polygon), curve, map, interpolation };
+    let polygon = Arc::new(polygon);
+    let subject = Subject::Other { polygon, curve, map, interpolation, corners, straight };
     ShapeReport::make(py, subject, asked)
 }
 

@@ -3,7 +3,11 @@
 use glam::{DVec3, DVec4};
 use shapespline_geometry::{BezierPart, polynomial::Polynomial};
 
-use crate::Calls;
+use crate::{Calls, rounding::LEG_ERROR};
+
+/// The most that a control point is off by, over its distance from the origin: those are known to 15 significant
+/// digits, as those of single cubics are. (√3 times what a coordinate is off by.)
+const DIGITS: f64 = 1.75 * 0.5 * LEG_ERROR;
 
 /// Parts of a segment shorter than this are rounding: where a part ends at a break, `to` and the break
 /// differ by it, and differences of control points of what lies between are zero.
@@ -31,7 +35,7 @@ pub(crate) struct Segment {
 
 impl Segment {
     /// From the parts of a piecewise Bézier curve; `offset` is the size of what was subtracted from
-    /// its control points, whose rounding they carry.
+    /// its control points, whose digits they carry.
     pub(crate) fn new(parts: &[BezierPart], rational: bool, offset: f64) -> Self {
         let start = parts.first().and_then(|p| p.control.first()).copied();
         let start = start.map_or(DVec3::ZERO, |p| p.truncate() / p.w);
@@ -42,7 +46,7 @@ impl Segment {
         let size = if size > 0.0 { size } else { 1.0 };
         let piece = |part: &BezierPart| {
             let points: Vec<DVec3> = part.control.iter().map(|p| moved(p) / size).collect();
-            let error = f64::EPSILON * (4.0 + 2.0 * offset / size);
+            let error = DIGITS * (1.0 + offset / size) + 4.0 * f64::EPSILON;
             let weights = || part.control.iter().map(|p| p.w / weight).collect();
             Piece {
                 local: part.local,

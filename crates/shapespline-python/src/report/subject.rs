@@ -28,6 +28,10 @@ pub(crate) enum Subject {
         map: Arc<InputMap>,
         /// How far from the points the curve may pass, over their extent.
         interpolation: f64,
+        /// The nodes at which the curve is to have corners: nothing is asked there.
+        corners: Vec<usize>,
+        /// The segments on which it is straight by construction.
+        straight: Vec<usize>,
     },
 }
 
@@ -133,8 +137,10 @@ impl Subject {
                 let checker = Checker::new(&polygon, criteria, tolerances);
                 Ok(work(Judge::Own(checker, curve.cubic().legs(), curve)))
             }
-            Self::Other { polygon, curve, map, interpolation } => {
+            Self::Other { polygon, curve, map, interpolation, corners, straight } => {
                 CurveChecker::new(polygon, curve, criteria, tolerances, *interpolation)
+                    .map(|checker| checker.with_free_nodes(corners))
+                    .map(|checker| checker.with_straight_segments(straight, corners))
                     .map(|checker| work(Judge::Other(checker, map)))
                     .map_err(|error| placed(map, error))
             }
