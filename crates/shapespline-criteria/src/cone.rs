@@ -33,6 +33,14 @@ fn quartic(v: Quadratic, n: DVec3, epsilon: f64) -> [f64; 5] {
     std::array::from_fn(|i| inside * along[i] - outside * (x[i] + y[i] + z[i]))
 }
 
+/// The same of one vector, to the bit its value at an end.
+fn depth(v: DVec3, n: DVec3, epsilon: f64) -> f64 {
+    let (across, along) = (v.cross(n), v.dot(n));
+    let (inside, outside) = (epsilon * epsilon, (1.0 - epsilon) * (1.0 + epsilon));
+    let square = across.x * across.x + across.y * across.y + across.z * across.z;
+    inside * (along * along) - outside * square
+}
+
 /// Axis of a double cone: a unit vector, and how far from it the true one may lie.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Axis {
@@ -62,22 +70,22 @@ impl Field {
         Self { v: part(self.v, from, to), off }
     }
 
-    /// How far the parts of a coefficient along and across an axis may be off.
-    fn errors(&self, axis: &Axis) -> [f64; 3] {
-        [0, 1, 2].map(|k| self.off[k] + sum(self.v[k]) * (axis.off + 6.0 * UNIT))
+    /// How far the parts of coefficient `k` along and across an axis may be off.
+    fn error(&self, k: usize, axis: &Axis) -> f64 {
+        self.off[k] + sum(self.v[k]) * (axis.off + 6.0 * UNIT)
     }
 
     /// Whether the vector at an end, 0 or 2, lies inside a double cone.
     pub(crate) fn end_is_inside(&self, end: usize, axis: &Axis, epsilon: f64, lean: Lean) -> bool {
-        let (v, off) = (self.v[end], self.errors(axis)[end]);
+        let v = self.v[end];
+        let off = self.error(end, axis);
         let (size, off) = (sum(v) + off, off + 8.0 * UNIT * sum(v));
-        let depth = quartic([v; 3], axis.direction, epsilon)[0];
-        depth + lean.sign() * (2.0 * size * off) > 0.0
+        depth(v, axis.direction, epsilon) + lean.sign() * (2.0 * size * off) > 0.0
     }
 
     /// Whether the vector stays inside a double cone.
     pub(crate) fn is_inside(&self, axis: &Axis, epsilon: f64, lean: Lean) -> bool {
-        let off = self.errors(axis);
+        let off = [0, 1, 2].map(|k| self.error(k, axis));
         let along = self.v.map(|x| x.dot(axis.direction));
         let has_side = |side: f64| {
             let [alpha, middle, beta] = [0, 1, 2]
@@ -163,6 +171,14 @@ mod tests {
                     prop_assert_eq!(inside(v, n, epsilon).holds(), largest < epsilon);
                 }
             }
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn the_depth_at_an_end_is_the_quartics(v in proptest::array::uniform3(vector()), n in vector(), epsilon in 0.05..0.99f64) {
+            let whole = quartic(v, n, epsilon);
+            prop_assert_eq!([depth(v[0], n, epsilon), depth(v[2], n, epsilon)], [whole[0], whole[4]]);
         }
     }
 

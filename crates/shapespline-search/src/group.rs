@@ -1,24 +1,23 @@
-//! Tensions lowered by a common factor, found by bisection, and what that does to the bending.
+//! Tensions lowered by a common factor, found by bisection.
 
-use std::collections::HashMap;
+use shapespline_geometry::DataPolygon;
 
-use shapespline_geometry::{CubicSegment, DVec3, DataPolygon};
-
-use crate::{TensionFamily, state::State};
+use crate::{
+    TensionFamily,
+    state::{AROUND, State},
+};
 
 /// How exactly the least factor of a tension is found, and the part of itself that is then added, so that
 /// changes far away, which are felt little, do not bring criteria to the brink.
 pub(crate) const RESOLUTION: f64 = 0.01;
 
+/// A tension that was lowered before is tried again if less by this part of itself seems to do: more than
+/// what was added so as not to be on the brink.
+pub(crate) const LEAST: f64 = 2.5 * RESOLUTION;
+
 /// Segments on each side of a node that tell how far its tension can be lowered. A segment beyond that it
 /// would break feels it so little that rounding would decide how far it goes: it goes half as far then.
 const REACH: usize = 6;
-
-/// Segments on each side of a node whose bending is compared before and after its tension is lowered.
-const BENDING_REACH: usize = 4;
-
-/// To what halves of a segment agree with the whole in that comparison; their sum is far more accurate.
-const BENDING_ACCURACY: f64 = 1e-2;
 
 /// Tensions that are lowered together, by one factor: mostly a single one.
 pub(crate) struct Group {
@@ -48,42 +47,66 @@ impl Group {
     ///
     /// Trials of the segments around them tell of nearly every factor whether it breaks a criterion, at
     /// a fraction of what it costs to set the tensions. What they find is set and checked as a whole.
+    ///
+    /// `again`: whether [`LEAST`] less is known to do as far as trials tell, and most likely not much less.
     pub(crate) fn lower<F: TensionFamily>(
         &mut self,
         state: &mut State<'_, F>,
+        again: bool,
     ) -> Result<f64, F::Error> {
         state.relaxations += 1;
-        let near = {
-            let nodes = self.full.iter().map(|(k, _)| k / F::SIDES);
-            segments_around(state.windows.polygon(), nodes, REACH)
+        let none = state.seems_to_break(self.at(0.0), AROUND);
+        let mut least = match none {
+            Some(true) => spared(self.by_trials(state, AROUND, 0.0, again)),
+            _ => 0.0,
         };
-        let [mut breaks, mut trial] = self.by_trials(state);
+        if least < 1.0 && !state.try_tension(self.at(least))? {
+            if none.is_none() || !self.breaks_near(state) {
+                return self.by_setting(state, least);
+            }
+            // Segments a little further away feel it too.
+            let further = spared(self.by_trials(state, REACH, least, false));
+            if further < 1.0 && !state.try_tension(self.at(further))? {
+                return self.by_setting(state, further);
+            }
+            least = further;
+            if least >= 1.0 {
+                state.return_to(self.at(1.0))?;
+            }
+        }
+        Ok(least.min(1.0))
+    }
+
+    /// The same where setting the tensions to a factor has turned out to break a criterion.
+    fn by_setting<F: TensionFamily>(
+        &mut self,
+        state: &mut State<'_, F>,
+        mut breaks: f64,
+    ) -> Result<f64, F::Error> {
         // How often only segments far away broke: half way back is tried once.
-        let mut far = 0;
-        let (mut keeps, mut set) = (1.0, 1.0);
-        while trial < keeps && !state.stopped {
-            set = trial;
-            if state.try_tension(self.at(trial))? {
-                keeps = trial;
-            } else {
-                breaks = trial;
-                far += usize::from(!state.has_faults_among(&near));
-            }
-            let ends = far == 1 && keeps == trial || far == 2;
-            if ends || keeps - breaks <= RESOLUTION * keeps {
-                break;
-            }
-            trial = 0.5 * (breaks + keeps);
+        let mut far = usize::from(!self.breaks_near(state));
+        let (mut keeps, mut set) = (1.0, breaks);
+        while far < 2 && keeps - breaks > RESOLUTION * keeps && !state.stopped {
+            let trial = 0.5 * (breaks + keeps);
             // Neighbouring numbers have none between them.
             if trial <= breaks {
                 break;
             }
+            set = trial;
+            if state.try_tension(self.at(trial))? {
+                keeps = trial;
+                if far == 1 {
+                    break;
+                }
+            } else {
+                breaks = trial;
+                far += usize::from(!self.breaks_near(state));
+            }
         }
-        let spared = keeps * (1.0 + RESOLUTION);
-        if 0.0 < keeps && spared < 1.0 {
-            set = spared;
-            if state.try_tension(self.at(spared))? {
-                keeps = spared;
+        if 0.0 < keeps && spared(keeps) < 1.0 {
+            set = spared(keeps);
+            if state.try_tension(self.at(set))? {
+                keeps = set;
             }
         }
         if set != keeps {
@@ -92,30 +115,51 @@ impl Group {
         Ok(keeps)
     }
 
-    /// The largest factor that is known to break a criterion, and the least that seems to keep all of
-    /// them, as far as segments around tell.
-    fn by_trials<F: TensionFamily>(&mut self, state: &mut State<'_, F>) -> [f64; 2] {
-        if state.seems_to_break(self.at(0.0)) != Some(true) {
-            return [0.0, 0.0];
+    /// Whether a segment near the tensions fails as they are set.
+    fn breaks_near<F: TensionFamily>(&self, state: &mut State<'_, F>) -> bool {
+        let nodes = self.full.iter().map(|(k, _)| k / F::SIDES);
+        let near = segments_around(state.windows.polygon(), nodes, REACH);
+        state.has_faults_among(&near)
+    }
+
+    /// The least factor, beyond one that breaks a criterion, that seems to keep them all as far as segments
+    /// within reach tell.
+    fn by_trials<F: TensionFamily>(
+        &mut self,
+        state: &mut State<'_, F>,
+        reach: usize,
+        mut breaks: f64,
+        gallops: bool,
+    ) -> f64 {
+        let (mut seems, mut stride) = (1.0, LEAST);
+        if gallops {
+            seems -= stride;
         }
-        let (mut breaks, mut seems) = (0.0, 1.0);
+        let mut gallops = gallops;
         while seems - breaks > RESOLUTION * seems {
-            let trial = 0.5 * (breaks + seems);
+            stride *= 2.0;
+            gallops &= 1.0 - stride > 0.5 * (breaks + seems);
+            let trial = if gallops { 1.0 - stride } else { 0.5 * (breaks + seems) };
             if trial <= breaks || trial >= seems {
                 break;
             }
-            match state.seems_to_break(self.at(trial)) {
-                Some(true) => breaks = trial,
+            match state.seems_to_break(self.at(trial), reach) {
+                Some(true) => (breaks, gallops) = (trial, false),
                 Some(false) => seems = trial,
                 None => break,
             }
         }
-        [breaks, seems]
+        seems
     }
 }
 
+/// A factor, and what is added to it so as not to be on the brink.
+fn spared(factor: f64) -> f64 {
+    factor * (1.0 + RESOLUTION)
+}
+
 /// The segments within reach of some nodes, ascending.
-fn segments_around(
+pub(crate) fn segments_around(
     polygon: &DataPolygon,
     nodes: impl Iterator<Item = usize>,
     reach: usize,
@@ -129,42 +173,4 @@ fn segments_around(
     segments.sort_unstable();
     segments.dedup();
     segments
-}
-
-/// The segments that feel the tensions at some nodes most, ascending.
-pub(crate) fn bent_by(polygon: &DataPolygon, nodes: impl Iterator<Item = usize>) -> Vec<usize> {
-    segments_around(polygon, nodes, BENDING_REACH)
-}
-
-/// `∫κ² ds` of segments, with the legs of which it was last found.
-#[derive(Debug)]
-pub(crate) struct Bending {
-    /// The unit of length.
-    unit: f64,
-    known: HashMap<usize, ([DVec3; 2], f64)>,
-}
-
-impl Bending {
-    pub(crate) fn new(unit: f64) -> Self {
-        Self { unit, known: HashMap::new() }
-    }
-
-    /// The sum over some segments.
-    pub(crate) fn of<F: TensionFamily>(&mut self, state: &State<'_, F>, segments: &[usize]) -> f64 {
-        segments.iter().map(|&i| self.of_segment(state, i)).sum()
-    }
-
-    fn of_segment<F: TensionFamily>(&mut self, state: &State<'_, F>, i: usize) -> f64 {
-        let legs = state.family.end_legs(i);
-        if let Some((known, bending)) = self.known.get(&i)
-            && *known == legs
-        {
-            return *bending;
-        }
-        let [a, c] = legs.map(|leg| leg / self.unit);
-        let b = state.windows.polygon().chord(i) / self.unit - a - c;
-        let bending = CubicSegment { start: DVec3::ZERO, a, b, c }.bending(BENDING_ACCURACY);
-        self.known.insert(i, (legs, bending));
-        bending
-    }
 }

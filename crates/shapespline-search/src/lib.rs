@@ -19,6 +19,7 @@
 //! Source: M. I. Karavelas, P. D. Kaklis, Numerical Algorithms 23 (2000), section 5.2 (algorithm
 //! NUSSP), with errata E4 and E5.
 
+mod bending;
 mod doubts;
 mod error;
 mod family;

@@ -2,66 +2,79 @@
 //!
 //! Every tension is lowered **by itself**, those at the sharpest ends of segments first, to the least value that keeps the shape while
 //! the others stay as they are; passes follow until nothing moves by more than some per cent. A change dies away
-//! as `2^{−k}` over `k` nodes, so each trial solves and checks a neighbourhood only, and a tension is
-//! tried again only if one within reach has moved.
+//! as `2^{−k}` over `k` nodes, so each trial solves and checks a neighbourhood only, a tension is
+//! tried again only if one within reach has moved, and tensions that are far apart are cleared up cluster by
+//! cluster.
 //!
 //! What ties ([`crate::order`]) is lowered together, so that symmetric data keep a symmetric curve whatever
 //! the direction in which points are numbered; only where that moves nothing, one after the other.
 
-use std::collections::HashSet;
+use std::{collections::HashSet, ops::Range};
+
+use shapespline_geometry::DVec3;
 
 use crate::{
     Phase, TensionFamily,
-    group::{Bending, Group, RESOLUTION, bent_by},
+    bending::{bending, bent_by, legs_of_segments},
+    group::{Group, LEAST, RESOLUTION},
     order::{Chords, mean_chord, sorted_groups},
-    state::State,
+    state::{AROUND, State},
     surroundings::Surroundings,
 };
+
+/// Nodes between two tensions of which neither feels the other: `2^{−48}` is close to rounding, and tension
+/// makes changes die away faster.
+const APART: usize = 48;
 
 /// Nodes over which a change by [`RESOLUTION`] falls below what any criterion feels.
 const REACH: usize = 8;
 
-/// The same for tensions that were left where they are for the curve's sake.
-const BESIDE: usize = 2;
+/// Nodes between tensions that moved again in one pass and are then lowered together.
+const BESIDE: usize = 3;
 
-/// A tension that was lowered before is tried again if less by this part of itself seems to do: more than
-/// what was added so as not to be on the brink.
-const LEAST: f64 = 2.5 * RESOLUTION;
+/// Passes after which of two orders one is kept.
+const TRIED: usize = 2;
 
 /// Limit of passes: the last ones move a few tensions by some per cent each.
 const PASSES: usize = 24;
 
-/// Bending may grow by this part of itself: less is rounding, or the accuracy of the quadrature.
+/// Bending may grow by this part of itself: less is rounding, or the accuracy of its integral.
 const BENDING_SLACK: f64 = 1e-3;
 
 /// Groups tried between two calls of the monitor.
 const BETWEEN_CALLS: usize = 64;
 
 /// Lowers the tensions of a curve without faults as far as that leaves it without faults.
-///
-/// Where several tensions hold each other up, what is left depends on which is tried first. Two orders are
-/// tried, and the one after which the curve bends less is kept.
 pub(crate) fn lower<F: TensionFamily>(state: &mut State<'_, F>) -> Result<(), F::Error> {
     let raised: Vec<usize> = positive(state.family.tension()).collect();
-    let (polygon, values) =
-        (state.windows.polygon(), |state: &State<'_, F>| -> Vec<(usize, f64)> {
-            raised.iter().map(|&k| (k, state.family.tension()[k])).collect()
-        });
-    let segments = bent_by(polygon, raised.iter().map(|k| k / F::SIDES));
-    let unit = mean_chord(polygon);
-    let mut descent = Descent::new(unit);
-    let full = values(state);
-    descent.lower(state, &raised, Chords::ShortFirst)?;
-    if state.stopped {
-        return Ok(());
+    let polygon = state.windows.polygon();
+    let mut descent = Descent::new(mean_chord(polygon));
+    let cycle = polygon.is_closed().then_some(polygon.nodes());
+    for cluster in clusters(raised, F::SIDES, cycle) {
+        descent.around.go(polygon, cluster[0] / F::SIDES);
+        descent.lower_cluster(state, &cluster)?;
+        if state.stopped {
+            break;
+        }
     }
-    let (first, bends) = (values(state), descent.bending.of(state, &segments));
-    state.return_to(&full)?;
-    descent.lower(state, &raised, Chords::LongFirst)?;
-    if descent.bending.of(state, &segments) > bends * (1.0 - BENDING_SLACK) {
-        state.return_to(&first)?;
-    }
+    state.log(Phase::Lower, 0, descent.moved);
     Ok(())
+}
+
+/// Tensions (ascending) that may feel each other.
+fn clusters(raised: Vec<usize>, sides: usize, cycle: Option<usize>) -> Vec<Vec<usize>> {
+    let meet = |a: &usize, b: &usize| b / sides - a / sides <= APART;
+    let mut all: Vec<Vec<usize>> = raised.chunk_by(meet).map(<[usize]>::to_vec).collect();
+    if let Some(nodes) = cycle
+        && let [first, .., last] = &*all
+        && meet(&last[last.len() - 1], &(first[0] + nodes * sides))
+        && let Some(tail) = all.pop()
+    {
+        // Over the seam.
+        all[0].extend(tail);
+        all[0].sort_unstable();
+    }
+    all
 }
 
 /// What descents need to know.
@@ -69,65 +82,149 @@ struct Descent {
     /// The mean chord.
     unit: f64,
     around: Surroundings,
-    bending: Bending,
     /// Tensions that stay where they are because less makes the curve bend more.
     stay: HashSet<usize>,
+    /// Groups that were tried, and how often nodes moved.
+    tried: usize,
+    moved: usize,
 }
 
 impl Descent {
     fn new(unit: f64) -> Self {
-        let (around, bending) = (Surroundings::default(), Bending::new(unit));
-        Self { unit, around, bending, stay: HashSet::new() }
+        let around = Surroundings::default();
+        Self { unit, around, stay: HashSet::new(), tried: 0, moved: 0 }
     }
 
-    /// Passes over the tensions that may still be lowered.
-    fn lower<F: TensionFamily>(
+    /// Lowers tensions that may feel each other.
+    ///
+    /// Where several tensions hold each other up, what is left depends on which is tried first. Where chords
+    /// decide that, both orders are tried for some passes, and the one after which the curve bends less is
+    /// kept.
+    fn lower_cluster<F: TensionFamily>(
         &mut self,
         state: &mut State<'_, F>,
-        raised: &[usize],
-        chords: Chords,
+        cluster: &[usize],
     ) -> Result<(), F::Error> {
-        let mut open = raised.to_vec();
+        let values = |state: &State<'_, F>| -> Vec<(usize, f64)> {
+            cluster.iter().map(|&k| (k, state.family.tension()[k])).collect()
+        };
+        let (polygon, unit, full) = (state.windows.polygon(), self.unit, values(state));
+        let mut chords = Chords::ShortFirst;
+        let groups = self.groups(state, cluster, chords);
+        let others = self.groups(state, cluster, Chords::LongFirst);
+        let differs = groups != others;
+        let mut open = self.descend(state, cluster, groups, chords, 0..TRIED)?;
+        if differs && !state.stopped {
+            let segments = bent_by(polygon, cluster.iter().map(|k| k / F::SIDES));
+            let bends = |state: &State<'_, F>| {
+                bending(polygon, &segments, &legs_of_segments(state.family, &segments), unit)
+            };
+            let (first, before) = (values(state), bends(state));
+            let (first_open, stay) = (open, std::mem::take(&mut self.stay));
+            state.return_to(&full)?;
+            open = self.descend(state, cluster, others, Chords::LongFirst, 0..TRIED)?;
+            if bends(state) > before * (1.0 - BENDING_SLACK) {
+                state.return_to(&first)?;
+                (open, self.stay) = (first_open, stay);
+            } else {
+                chords = Chords::LongFirst;
+            }
+        }
+        if !open.is_empty() && !state.stopped {
+            let groups = self.groups(state, &open, chords);
+            self.descend(state, cluster, groups, chords, TRIED..PASSES)?;
+        }
         self.stay.clear();
-        for pass in 0..PASSES {
+        Ok(())
+    }
+
+    /// Tensions in the order in which they are tried, what ties together.
+    fn groups<F: TensionFamily>(
+        &mut self,
+        state: &State<'_, F>,
+        open: &[usize],
+        chords: Chords,
+    ) -> Vec<Vec<usize>> {
+        let (polygon, order) = (state.windows.polygon(), (chords, self.unit));
+        sorted_groups(open, polygon, &*state.family, order, &mut self.around)
+    }
+
+    /// Passes over the tensions that may still be lowered, the first one in a known order. Returns those that
+    /// may be lowered still.
+    fn descend<F: TensionFamily>(
+        &mut self,
+        state: &mut State<'_, F>,
+        cluster: &[usize],
+        mut groups: Vec<Vec<usize>>,
+        chords: Chords,
+        passes: Range<usize>,
+    ) -> Result<Vec<usize>, F::Error> {
+        let (nodes, closed) = (state.windows.polygon().nodes(), state.closed());
+        let still = |state: &State<'_, F>, k: usize| state.family.tension()[k] > 0.0;
+        let (mut open, mut are_stayed) = (Vec::new(), false);
+        for pass in passes {
             let mut moved = Vec::new();
-            let (polygon, order) = (state.windows.polygon(), (chords, self.unit));
-            let groups = sorted_groups(&open, polygon, &*state.family, order, &mut self.around);
-            for (count, tied) in groups.iter().enumerate() {
+            for tied in &groups {
                 self.lower_tied(state, tied, pass > 0, &mut moved)?;
-                if count % BETWEEN_CALLS == BETWEEN_CALLS - 1
-                    && state.wants_to_stop(Phase::Lower, moved.len())
-                {
-                    break;
+                self.tried += 1;
+                if self.tried.is_multiple_of(BETWEEN_CALLS) {
+                    state.wants_to_stop(Phase::Lower, moved.len());
+                }
+                if state.stopped {
+                    return Ok(open);
                 }
             }
-            state.log(Phase::Lower, 0, moved.len());
-            if state.stopped {
+            self.moved += moved.len();
+            if moved.is_empty() && are_stayed {
+                return Ok(Vec::new());
+            }
+            are_stayed = moved.is_empty();
+            open = if are_stayed {
+                // Those that stayed may go after all, now that the others are where they are.
+                let mut stayed: Vec<usize> = self.stay.drain().collect();
+                stayed.retain(|&k| still(state, k));
+                stayed.sort_unstable();
+                stayed
+            } else {
+                moved.sort_unstable();
+                if pass > 1 {
+                    self.lower_runs(state, &moved)?;
+                }
+                moved.iter_mut().for_each(|k| *k /= F::SIDES);
+                let cycle = closed.then_some(nodes);
+                let is_open = |k: &usize| {
+                    still(state, *k)
+                        && !self.stay.contains(k)
+                        && near(&moved, k / F::SIDES, REACH, cycle)
+                };
+                cluster.iter().copied().filter(is_open).collect()
+            };
+            if open.is_empty() {
                 break;
             }
-            if moved.is_empty() {
-                // Those that stayed may go after all, now that the others are where they are.
-                let stayed = self.stay.drain().filter(|&k| state.family.tension()[k] > 0.0);
-                let mut stayed: Vec<usize> = stayed.collect();
-                stayed.sort_unstable();
-                if stayed.is_empty() || open == stayed {
-                    break;
-                }
-                open = stayed;
-                continue;
+            groups = self.groups(state, &open, chords);
+        }
+        Ok(open)
+    }
+
+    /// Lowers tensions that moved again, neighbours together: where each lets the others go a little further,
+    /// they would take one pass after the other.
+    fn lower_runs<F: TensionFamily>(
+        &mut self,
+        state: &mut State<'_, F>,
+        moved: &[usize],
+    ) -> Result<(), F::Error> {
+        let still: Vec<usize> =
+            moved.iter().copied().filter(|&k| state.family.tension()[k] > 0.0).collect();
+        for run in still.chunk_by(|a, b| b / F::SIDES - a / F::SIDES <= BESIDE) {
+            if run.len() > 1 && !state.stopped {
+                self.lower_group(state, run, true)?;
             }
-            moved.sort_unstable();
-            let (nodes, closed) = (state.windows.polygon().nodes(), state.closed());
-            let is_near = |k: &usize| {
-                let reach = if self.stay.contains(k) { BESIDE } else { REACH };
-                near(&moved, k / F::SIDES, reach, closed.then_some(nodes))
-            };
-            open = positive(state.family.tension()).filter(is_near).collect();
         }
         Ok(())
     }
 
-    /// Lowers tensions that tie, together or else one after the other, and adds the nodes that moved.
+    /// Lowers tensions that tie, together or else one after the other, and adds those that moved.
     fn lower_tied<F: TensionFamily>(
         &mut self,
         state: &mut State<'_, F>,
@@ -136,11 +233,11 @@ impl Descent {
         moved: &mut Vec<usize>,
     ) -> Result<(), F::Error> {
         if self.lower_group(state, tied, again)? {
-            moved.extend(tied.iter().map(|k| k / F::SIDES));
+            moved.extend(tied);
         } else if tied.len() > 1 {
             for k in tied {
                 if !state.stopped && self.lower_group(state, &[*k], again)? {
-                    moved.push(k / F::SIDES);
+                    moved.push(*k);
                 }
             }
         }
@@ -158,14 +255,14 @@ impl Descent {
         again: bool,
     ) -> Result<bool, F::Error> {
         let mut group = Group::of(indices, state.family.tension());
-        if again && state.seems_to_break(group.at(1.0 - LEAST)) == Some(true) {
+        if again && state.seems_to_break(group.at(1.0 - LEAST), AROUND) == Some(true) {
             return Ok(false);
         }
         let nodes = indices.iter().map(|k| k / F::SIDES);
         let segments = bent_by(state.windows.polygon(), nodes);
-        let before = self.bending.of(state, &segments);
-        let factor = group.lower(state)?;
-        if factor < 1.0 && self.bending.of(state, &segments) > before * (1.0 + BENDING_SLACK) {
+        let before = legs_of_segments(state.family, &segments);
+        let factor = group.lower(state, again)?;
+        if factor < 1.0 && self.bends_more(state, &segments, &before) {
             state.return_to(group.at(1.0))?;
             self.stay.extend(indices);
             return Ok(false);
@@ -174,6 +271,19 @@ impl Descent {
             self.stay.remove(k);
         });
         Ok(factor < 1.0 - RESOLUTION)
+    }
+
+    /// Whether segments bend more than they did with other legs.
+    fn bends_more<F: TensionFamily>(
+        &self,
+        state: &State<'_, F>,
+        segments: &[usize],
+        before: &[[DVec3; 2]],
+    ) -> bool {
+        let polygon = state.windows.polygon();
+        let now = legs_of_segments(state.family, segments);
+        let bends = |legs: &[[DVec3; 2]]| bending(polygon, segments, legs, self.unit);
+        bends(&now) > bends(before) * (1.0 + BENDING_SLACK)
     }
 }
 

@@ -7,7 +7,7 @@ use std::cmp::Ordering;
 
 use shapespline_geometry::{DVec3, DataPolygon, length};
 
-use crate::{TensionFamily, surroundings::Surroundings};
+use crate::{TensionFamily, bending::end_curvature, surroundings::Surroundings};
 
 /// Logarithms are rounded to this: smaller differences are rounding, or where bisection happened to end.
 const BUCKET: f64 = 1e-6;
@@ -117,9 +117,6 @@ fn beside(polygon: &DataPolygon, node: usize, side: usize) -> Option<usize> {
 /// Curvature at a node, on the side of the segment before or after it.
 fn sharpness<F: TensionFamily>(polygon: &DataPolygon, family: &F, node: usize, side: usize) -> f64 {
     let Some(segment) = beside(polygon, node, side) else { return 0.0 };
-    let chord = polygon.chord(segment);
     let [a, c] = family.end_legs(segment);
-    let (own, other) = if side == 0 { (c, a) } else { (a, c) };
-    let size = length(own);
-    length((own / size).cross((chord - other) / size)) / size
+    end_curvature(polygon.chord(segment), if side == 0 { [c, a] } else { [a, c] })
 }

@@ -3,7 +3,7 @@
 use crate::{
     Pattern, Phase, SearchOptions, Status, TensionFamily,
     fronts::{Front, Fronts},
-    state::{State, on_all_sides},
+    state::{AROUND, State, on_all_sides},
 };
 
 impl<F: TensionFamily> State<'_, F> {
@@ -143,7 +143,7 @@ impl<F: TensionFamily> State<'_, F> {
     /// them and takes in all that are known to fail.
     fn faults_stay(&mut self) -> bool {
         let pending = std::mem::take(&mut self.pending);
-        let around = self.look(&on_all_sides::<F>(&pending));
+        let around = self.look(&on_all_sides::<F>(&pending), AROUND);
         self.pending = pending;
         let Some(around) = around else { return false };
         if self.faults.iter().any(|(i, _)| !around.contains(i)) {

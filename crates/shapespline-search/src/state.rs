@@ -15,9 +15,9 @@ use crate::{Diagnostics, Outcome, Phase, Status, Step, TensionFamily, doubts::Do
 /// rayon's own pool are gone, and Python enters its own for work of this size only.
 const MANY: usize = 8192;
 
-/// Segments on either side of a change of tension that a look takes in: what is further away hardly
+/// Segments on either side of a change of tension that a look takes in first: what is further away hardly
 /// feels it.
-const AROUND: usize = 2;
+pub(crate) const AROUND: usize = 2;
 
 /// The family, the checker, and what is known to fail.
 pub(crate) struct State<'s, F> {
@@ -104,10 +104,10 @@ impl<'s, F: TensionFamily> State<'s, F> {
 
     /// Fills `legs` with the end legs that segments around some tensions would have under other values of
     /// those, where that can be seen without setting them. Returns the segments.
-    pub(crate) fn look(&mut self, changes: &[(usize, f64)]) -> Option<Range<usize>> {
+    pub(crate) fn look(&mut self, changes: &[(usize, f64)], reach: usize) -> Option<Range<usize>> {
         let [first, last] = [changes.first()?.0, changes.last()?.0].map(|index| index / F::SIDES);
         let segments = self.windows.polygon().segments();
-        let around = first.saturating_sub(AROUND)..segments.min(last + AROUND);
+        let around = first.saturating_sub(reach)..segments.min(last + reach);
         if !self.family.legs_under(changes, around.clone(), &mut self.legs) {
             return None;
         }
@@ -117,8 +117,12 @@ impl<'s, F: TensionFamily> State<'s, F> {
 
     /// Whether segments around some tensions fail under other values of those, where that can be seen
     /// without setting them.
-    pub(crate) fn seems_to_break(&mut self, changes: &[(usize, f64)]) -> Option<bool> {
-        let around = self.look(changes)?;
+    pub(crate) fn seems_to_break(
+        &mut self,
+        changes: &[(usize, f64)],
+        reach: usize,
+    ) -> Option<bool> {
+        let around = self.look(changes, reach)?;
         let (legs, start) = (&self.legs, around.start);
         let suspect = self.suspect;
         let (windows, doubts) = (&mut self.windows, &self.doubts);

@@ -20,6 +20,8 @@ const ANGLES: usize = 3;
 /// The numbers by which surroundings are compared, each found when it is first asked for.
 #[derive(Debug, Default)]
 pub(crate) struct Surroundings {
+    /// Those of the segments from here on, round and round.
+    first: usize,
     segments: Vec<Option<Segment>>,
 }
 
@@ -31,6 +33,15 @@ struct Segment {
 }
 
 impl Surroundings {
+    /// Goes to nodes from some node on, and forgets what was seen elsewhere.
+    pub(crate) fn go(&mut self, polygon: &DataPolygon, node: usize) {
+        let n = polygon.segments();
+        let beside = (LOOK + ANGLES + 1).min(n);
+        self.first =
+            if polygon.is_closed() { node + n - beside } else { node.saturating_sub(beside) };
+        self.segments.clear();
+    }
+
     /// Compares what is seen from nodes by looking to one side (0: before, 1: after) and the other in
     /// turn, ever further away. Equal if nothing within sight differs.
     pub(crate) fn compare(
@@ -79,8 +90,12 @@ impl Surroundings {
     }
 
     fn segment(&mut self, polygon: &DataPolygon, i: usize) -> Segment {
-        self.segments.resize(polygon.segments(), None);
-        *self.segments[i].get_or_insert_with(|| Segment::new(polygon, i))
+        let n = polygon.segments();
+        let place = (i + n - self.first % n) % n;
+        if place >= self.segments.len() {
+            self.segments.resize(place + 1, None);
+        }
+        *self.segments[place].get_or_insert_with(|| Segment::new(polygon, i))
     }
 }
 
