@@ -274,9 +274,9 @@ impl Chain {
         self.quadrature = (0..self.segments.len()).map(rule).collect();
     }
 
-    /// Minimises the bending energy of some segments.
-    pub(crate) fn bend(&mut self, segments: Range<usize>) {
-        for segment in &mut self.segments[segments] {
+    /// From now on minimises the bending energy.
+    pub(crate) fn bend(&mut self) {
+        for segment in &mut self.segments {
             segment.energy = Energy::Bending;
         }
     }

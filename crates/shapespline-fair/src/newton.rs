@@ -127,6 +127,63 @@ impl Chain {
         converged
     }
 
+    /// Newton's plain steps from near a minimum, as long as each promises less than the one before: they end at
+    /// rounding, where the values of the function can no longer tell better from worse.
+    pub(crate) fn polish(&mut self, barrier: &Barrier, steps: usize, control: &mut Control<'_>) {
+        let mut w = std::mem::take(&mut self.workspace);
+        w.damping.clear();
+        w.damping.resize(self.segments.len(), 0.0);
+        self.choose_quadrature();
+        self.evaluate(barrier, &mut w.values, &mut w.margins);
+        let mut least = f64::INFINITY;
+        for _ in 0..steps {
+            self.linearise(barrier, &mut w);
+            self.assemble(&mut w);
+            let solved = w.factors.factor(&w.diagonal, &w.coupling).is_ok();
+            if !solved || !control.next_step() {
+                break;
+            }
+            self.solve_direction(&mut w);
+            let decrement = self.decrement(&w);
+            // Written so that a NaN ends it.
+            if !(decrement < 0.25 * least) {
+                break;
+            }
+            least = decrement;
+            w.before.clone_from(&self.nodes);
+            self.advance(&w);
+            self.evaluate(barrier, &mut w.trial, &mut w.trial_margins);
+            if w.trial.iter().any(|v| !v.is_finite()) {
+                self.nodes.clone_from(&w.before);
+                break;
+            }
+            std::mem::swap(&mut w.margins, &mut w.trial_margins);
+            self.update_multipliers(barrier, &w);
+        }
+        self.workspace = w;
+    }
+
+    /// Solves the assembled system for the direction of the step.
+    fn solve_direction(&self, w: &mut Workspace) {
+        w.factors.solve(&mut w.right);
+        w.direction.clear();
+        w.direction.extend(w.right.iter().map(node));
+        for (step, freedom) in w.direction.iter_mut().zip(&self.freedom) {
+            for (v, line) in [&mut step.q, &mut step.r].into_iter().zip(freedom.lines()) {
+                if let Some(t) = line {
+                    *v = t * v.dot(t);
+                }
+            }
+        }
+    }
+
+    /// Takes the step from where the nodes were before.
+    fn advance(&mut self, w: &Workspace) {
+        for (node, (old, step)) in self.nodes.iter_mut().zip(w.before.iter().zip(&w.direction)) {
+            *node = old.plus(*step);
+        }
+    }
+
     fn evaluate(&self, barrier: &Barrier, values: &mut Vec<f64>, margins: &mut Vec<f64>) {
         values.clear();
         margins.clear();
@@ -166,24 +223,12 @@ impl Chain {
         w.flagged.resize(self.segments.len(), false);
         for _ in 0..SOLVES {
             control.solves += 1;
-            w.factors.solve(&mut w.right);
-            w.direction.clear();
-            w.direction.extend(w.right.iter().map(node));
-            for (step, freedom) in w.direction.iter_mut().zip(&self.freedom) {
-                for (v, line) in [&mut step.q, &mut step.r].into_iter().zip(freedom.lines()) {
-                    if let Some(t) = line {
-                        *v = t * v.dot(t);
-                    }
-                }
-            }
+            self.solve_direction(w);
             let decrement = self.decrement(w);
             if !decrement.is_finite() {
                 return None;
             }
-            for (node, (old, step)) in self.nodes.iter_mut().zip(w.before.iter().zip(&w.direction))
-            {
-                *node = old.plus(*step);
-            }
+            self.advance(w);
             self.evaluate(barrier, &mut w.trial, &mut w.trial_margins);
             if is_good(decrement, w) {
                 relieve(w);

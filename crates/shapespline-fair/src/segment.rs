@@ -47,8 +47,8 @@ pub(crate) struct Segment {
     pub(crate) gamma: f64,
     /// Sign of torsion asked for, or 0.
     pub(crate) torsion: f64,
-    /// Unit bisectors of the chords at the two nodes, zero where the polygon turns back; of straight runs
-    /// their direction.
+    /// Forward at the two nodes: the unit bisectors of the chords, or the directions of given tangents and of
+    /// straight runs; zero where the polygon turns back.
     pub(crate) bisectors: [DVec3; 2],
     /// Parts of the segment on which `ω` stays near the normals.
     pub(crate) plane: Option<[f64; 2]>,
@@ -141,6 +141,11 @@ impl Demands<'_> {
         self.checker.calls()[i].any(Calls::COPLANARITY.and(Calls::SPLIT_COPLANARITY))
     }
 
+    /// Whether coplanarity is asked for on both sides of an inflection.
+    pub(crate) fn is_split(&self, i: usize) -> bool {
+        self.checker.calls()[i].any(Calls::SPLIT_COPLANARITY)
+    }
+
     /// How far control points of a segment may lie from its chord, over the chord's length.
     pub(crate) fn deviation(&self, i: usize) -> Option<f64> {
         let chord = length(self.checker.polygon().chord(i));
@@ -153,11 +158,22 @@ impl Demands<'_> {
         let n = polygon.segments();
         let [p, q] = polygon.binormals(i);
         let [before, own, after] = polygon.directions_around(i);
-        let bisector = |a: DVec3, b: DVec3| {
+        // Forward at a node: between the chords, or where a tangent is given, along that.
+        let forward = |node: usize, tangent: Option<DVec3>, [a, b]: [DVec3; 2]| {
+            let direction = self.constraints.direction(node % polygon.nodes()).or(tangent);
             let sum = a + b;
-            if sum.length() > SHARPEST { sum.normalize() } else { DVec3::ZERO }
+            match direction {
+                _ if sum.length() <= SHARPEST => DVec3::ZERO,
+                Some(direction) => direction,
+                None => sum.normalize(),
+            }
         };
         let lines = [i, (i + 1) % polygon.nodes()].map(|node| self.runs.line(node));
+        let [at_start, at_end] = polygon.tangents();
+        let given = [
+            at_start.filter(|_| i == 0).map(|_| before),
+            at_end.filter(|_| i + 1 == n).map(|_| after),
+        ];
         let bend = self.bend(i);
         let end = if bend == Bend::Inflecting { -normalize(q) } else { normalize(q) };
         let neighbours = if polygon.is_closed() {
@@ -167,7 +183,6 @@ impl Demands<'_> {
         };
         let sine = neighbours.into_iter().fold(self.sine(i), |m, k| m.max(self.sine(k)));
         let span = self.span(i);
-        let split = calls.any(Calls::SPLIT_COPLANARITY);
         Segment {
             span,
             bend,
@@ -185,10 +200,10 @@ impl Demands<'_> {
             gamma: p.dot(after),
             torsion: self.torsion(i),
             bisectors: [
-                lines[0].unwrap_or_else(|| bisector(before, own)),
-                lines[1].unwrap_or_else(|| bisector(own, after)),
+                lines[0].unwrap_or_else(|| forward(i, given[0], [before, own])),
+                lines[1].unwrap_or_else(|| forward(i + 1, given[1], [own, after])),
             ],
-            plane: if split {
+            plane: if self.is_split(i) {
                 let at = separation(polygon, i);
                 Some([0.5 * at, 0.5 * (1.0 + at)])
             } else {

@@ -27,6 +27,9 @@ pub(crate) const LAST: f64 = 1e-3;
 /// and its restarts took 10 s and ended at the closed-form start).
 const TIGHT: f64 = 1e-3;
 
+/// Newton's last steps; each doubles the digits.
+const POLISH: usize = 10;
+
 /// Searches for segments that nearly stop.
 const ROUNDS: usize = 4;
 
@@ -77,7 +80,7 @@ pub(crate) fn solve(
 /// Brings a chain that nearly holds to hold, and then to its minimum. Whether it came to hold.
 pub(crate) fn settle_nearby(chain: &mut Chain, energy: Energy, control: &mut Control<'_>) -> bool {
     if energy == Energy::Bending {
-        chain.bend(0..chain.segments.len());
+        chain.bend();
     }
     // As the curve was found: with middle coefficients as exact as they are asked for.
     chain.set_exact_middles(true);
@@ -97,10 +100,8 @@ pub(crate) fn settle_nearby(chain: &mut Chain, energy: Energy, control: &mut Con
         return false;
     }
     // Where the curve nearly stops it goes on to bend less.
-    for k in 0..chain.segments.len() {
-        if chain.nearly_stops(k) {
-            chain.bend(k.saturating_sub(1)..(k + 2).min(chain.segments.len()));
-        }
+    if (0..chain.segments.len()).any(|k| chain.nearly_stops(k)) {
+        chain.bend();
     }
     control.begin(Phase::Improve, 0);
     finish(chain, 0.01, control);
@@ -114,25 +115,23 @@ fn is_tight(chain: &Chain) -> bool {
     chain.segments.iter().any(|segment| segment.deviation.is_some_and(|d| d < TIGHT))
 }
 
-/// Minimises the bending energy of segments of a feasible chain in which the curve nearly stops: there
-/// `∫|Q''|²du` does not see how it bends.
+/// Where a feasible chain nearly stops, `∫|Q''|²du` does not see how it bends: minimises the bending energy of
+/// such a chain, with restarts at its slow segments.
 pub(crate) fn quicken(demands: &Demands<'_>, chain: &mut Chain, control: &mut Control<'_>) {
     if is_tight(chain) {
         return;
     }
+    let count = chain.segments.len();
+    let mut tried = vec![false; count];
     for _ in 0..ROUNDS {
-        let slow: Vec<usize> = (0..chain.segments.len())
-            .filter(|&k| chain.segments[k].energy == Energy::Parametric)
-            .filter(|&k| chain.nearly_stops(k))
-            .collect();
+        let slow: Vec<usize> = (0..count).filter(|&k| !tried[k] && chain.nearly_stops(k)).collect();
         if slow.is_empty() || control.is_over() {
             break;
         }
-        for &k in &slow {
-            chain.bend(k.saturating_sub(1)..(k + 2).min(chain.segments.len()));
-        }
+        slow.iter().for_each(|&k| tried[k] = true);
         control.begin(Phase::Restart, slow.len());
         let before = (chain.nodes.clone(), chain.segments.clone());
+        chain.bend();
         refresh(demands, chain, &slow, control);
         control.begin(Phase::Improve, 0);
         improve(chain, 0.1, control);
@@ -147,7 +146,7 @@ pub(crate) fn quicken(demands: &Demands<'_>, chain: &mut Chain, control: &mut Co
 
 /// Brings the bending energy of a feasible chain down to the end.
 pub(crate) fn finish_bending(chain: &mut Chain, control: &mut Control<'_>) {
-    chain.bend(0..chain.segments.len());
+    chain.bend();
     control.begin(Phase::Improve, 0);
     for weight in [1.0, 0.1, 0.01] {
         improve(chain, weight, control);
@@ -159,9 +158,9 @@ pub(crate) fn finish_bending(chain: &mut Chain, control: &mut Control<'_>) {
 pub(crate) fn finish(chain: &mut Chain, weight: f64, control: &mut Control<'_>) {
     chain.set_exact_middles(true);
     let barrier = Barrier { weight, penalty: None, protects: false };
-    for (decrement, steps) in [(1e-3 * weight, 100), (1e-15, 8)] {
-        chain.minimise(&barrier, Limits { decrement, steps, until_all_hold: false }, control);
-    }
+    let limits = Limits { decrement: 1e-3 * weight, steps: 100, until_all_hold: false };
+    chain.minimise(&barrier, limits, control);
+    chain.polish(&barrier, POLISH, control);
 }
 
 /// Newton's steps with the barrier proper.
@@ -230,6 +229,21 @@ fn start_all(demands: &Demands<'_>, chain: &mut Chain, shortens: bool) -> bool {
             scales[j].handle *= 0.6;
             scales[j].curvature *= 0.8;
         }
+        even_out(demands, chain, &mut scales);
     }
     false
+}
+
+/// Gives both ends of every segment that inflects near a plane the shorter handle: their ratio says where it
+/// inflects.
+fn even_out(demands: &Demands<'_>, chain: &Chain, scales: &mut [Scales]) {
+    let total = demands.checker.polygon().segments();
+    let count = chain.segments.len();
+    for k in (0..count).chain((0..count).rev()) {
+        if demands.is_split((chain.first + k) % total) {
+            let [a, b] = chain.ends(k);
+            let least = scales[a].handle.min(scales[b].handle);
+            (scales[a].handle, scales[b].handle) = (least, least);
+        }
+    }
 }

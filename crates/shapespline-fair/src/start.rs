@@ -36,7 +36,9 @@ pub(crate) fn start(demands: &Demands<'_>, node: usize, scales: Scales) -> Node 
     let (h0, h1) = (before.length, after.length);
     let cosine = u.dot(v);
     let low = 0.1 + 0.4 * ((1.0 - cosine) / 1.7).clamp(0.0, 1.0);
-    let alpha = (h1 / (h0 + h1)).clamp(low, 1.0 - low);
+    // Where a segment inflects near a plane, its two handles say where, and have to agree.
+    let is_even = sides.into_iter().flatten().any(|i| demands.is_split(i));
+    let alpha = if is_even { 0.5 } else { (h1 / (h0 + h1)).clamp(low, 1.0 - low) };
     let beta = 1.0 - alpha;
     let mut t = u * alpha + v * beta;
     if let Some(line) = demands.runs.line(node) {
@@ -44,8 +46,8 @@ pub(crate) fn start(demands: &Demands<'_>, node: usize, scales: Scales) -> Node 
     }
     let p = u.cross(v);
     let sine = p.length();
-    if sine <= demands.checker.tolerances().zero || t.length() < 1e-6 {
-        let t = demands.constraints.direction(node).unwrap_or(t / t.length().max(1e-6));
+    if sine <= demands.checker.tolerances().zero || t.length() < 1e-12 {
+        let t = demands.constraints.direction(node).unwrap_or(t / t.length().max(1e-12));
         return Node { q: t * (scales.handle * speed), r: DVec3::ZERO };
     }
     let normal = p / sine;
@@ -56,7 +58,8 @@ pub(crate) fn start(demands: &Demands<'_>, node: usize, scales: Scales) -> Node 
     let x = match demands.constraints.direction(node) {
         None => {
             let x = tilt(demands, node, t, [u, v]) * size;
-            t = (t - normal * x.dot(t)).normalize();
+            let size = if is_even { t.length() } else { 1.0 };
+            t = (t - normal * x.dot(t)).normalize() * size;
             x
         }
         Some(direction) => {
@@ -70,7 +73,7 @@ pub(crate) fn start(demands: &Demands<'_>, node: usize, scales: Scales) -> Node 
                 + normal.cross(bisector) * ((b - a) / difference.length().max(1e-300))
         }
     };
-    let r = (normal + x).cross(t).normalize();
+    let r = (normal + x).cross(t).normalize() * t.length();
     let natural = 2.0 * sine / (h0 + h1);
     Node {
         q: t * (scales.handle * speed),
