@@ -5,12 +5,9 @@
 //! of them is found as well, and of the two the one that bends less is kept.
 
 use shapespline_criteria::Criteria;
-use shapespline_geometry::{Curve, DataPolygon};
+use shapespline_geometry::{Curve, DataPolygon, PiecewiseBezier, fairness};
 
 use crate::{Fit, FitError, Interpolant, SearchOptions, Status, Strategy};
-
-/// Accuracy of the bending energies that are compared.
-const ACCURACY: f64 = 1e-9;
 
 /// The fit, or that of `search` with all criteria where it keeps what is asked and bends less.
 ///
@@ -42,7 +39,8 @@ pub fn or_of_all_criteria<C: Interpolant>(
     Ok(if is_proved { Fit { report, ..other } } else { fit })
 }
 
+/// `∫κ²ds`, cut at the extrema of curvature: it may be all in one spike.
 fn bending<C: Interpolant>(fit: &Fit<C>) -> f64 {
-    let cubic = fit.curve.curve().cubic();
-    (0..cubic.segments()).map(|i| cubic.segment(i).bending(ACCURACY)).sum()
+    let found = fairness(&PiecewiseBezier::from(fit.curve.curve().cubic()));
+    found.bending / found.length
 }

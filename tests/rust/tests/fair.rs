@@ -257,27 +257,49 @@ fn walk(seed: usize, decades: f64, dimension: Dimension) -> DataPolygon {
 #[test]
 fn walks_keep_their_shape_with_little_energy() {
     for (dimension, count, median_at_most) in
-        [(Dimension::Three, 1000, 1.05), (Dimension::Two, 500, 1.2)]
+        [(Dimension::Three, 1000, 0.5), (Dimension::Two, 500, 0.2)]
     {
-        let (mut ratios, mut bent) = (Vec::new(), 0);
+        let (mut ratios, mut bent, mut above, mut open) = (Vec::new(), 0, 0, 0);
         for seed in 0..scaled(count) {
             let polygon = walk(seed, 1.0, dimension);
             let fit = fit(polygon.clone(), Energy::Parametric);
             let name = format!("walk {seed} in {dimension:?}");
             assert_eq!(fit.diagnostics.status, Status::Solved, "{name}: {}", fit.report);
-            verify(&polygon, &fit.curve, &name);
+            assert!(fit.report.violations.is_empty(), "{name}: {}", fit.report);
             assert!(fit.diagnostics.energy >= fit.diagnostics.energy_cubic * (1.0 - 1e-12));
+            if !fit.report.undecided.is_empty() {
+                open += 1;
+                continue;
+            }
+            verify(&polygon, &fit.curve, &name);
             if fit.diagnostics.method != Method::Cubic {
-                let [[e, _], [e0, _]] = [&fit.curve, &plain(polygon)].map(measures);
+                let [[e, _], [e0, _]] = [&fit.curve, &plain(polygon.clone())].map(measures);
                 ratios.push(e / e0);
                 bent += usize::from(e > 1.1 * e0);
+                above += usize::from(e > 1.1 * with_tension(polygon));
             }
         }
         ratios.sort_by(f64::total_cmp);
         let median = ratios[ratios.len() / 2];
+        eprintln!(
+            "{dimension:?}: median {median}, {bent} above the cubic, {above} above tension, {open} open"
+        );
         assert!(median <= median_at_most, "{dimension:?}: {median}");
-        assert!(bent * 20 <= ratios.len(), "{dimension:?}: {bent} of {}", ratios.len());
+        assert!(bent * 50 <= ratios.len(), "{dimension:?}: {bent} of {}", ratios.len());
+        assert_eq!(above, 0, "{dimension:?}: above the tension cubic");
+        // Where the binormals next to a turn by nearly 180° are nearly perpendicular, rounding may hide a sign.
+        assert!(open * 400 <= count, "{dimension:?}: {open} undecided");
     }
+}
+
+/// `∫κ²ds` of the tension cubic with tension per side, in units of the mean chord.
+fn with_tension(polygon: DataPolygon) -> f64 {
+    let options = SearchOptions { strategy: Strategy::Fairest, ..SearchOptions::default() };
+    let mean = polygon.points().windows(2).map(|p| p[1].distance(p[0])).sum::<f64>()
+        / polygon.segments() as f64;
+    let curve = TensionSpline::shape_preserving(polygon, &options).unwrap().curve;
+    let fairness = fairness(&PiecewiseBezier::from(curve.curve().cubic()));
+    fairness.bending / fairness.length * mean
 }
 
 #[test]
