@@ -54,8 +54,8 @@ def make_case(family, end, name, parameters):
     return cases.Case(f"{name}, {parameters}", points, parameters, end, family)
 
 
-#: A fair curve is a minimum of its energy, and long irregular walks have several: rounding decides which of
-#: them is found (limits.md). Small sets have one.
+#: A fair curve is a minimum of its energy, and long irregular walks have several: rounding decides
+#: which of them is found (limits.md). Small sets have one.
 FAIR_SETS = ("lattice walk", "stairs")
 
 
