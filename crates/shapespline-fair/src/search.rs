@@ -16,9 +16,9 @@ use crate::{
 /// Segments from on which windows are solved on all threads, if there are several.
 const MANY: usize = 8192;
 
-/// Free nodes beside a failing segment in the widest windows short of the whole curve: in these, too, all
-/// is put to the closed-form start if nothing else helps.
-const WIDE: usize = 16 * BESIDE;
+/// Free nodes beside a failing segment in wider windows: in these, too, all is put to the closed-form start if
+/// nothing else helps.
+const WIDE: usize = 4 * BESIDE;
 
 impl Found<'_> {
     /// Solves windows around the failing segments; those in which that fails, wider ones.
@@ -33,11 +33,11 @@ impl Found<'_> {
         self.open.extend(&failing);
         let (count, closed) = (polygon.nodes(), polygon.is_closed());
         let mut done = Vec::new();
-        for beside in [BESIDE, 4 * BESIDE, WIDE, count] {
+        for beside in [BESIDE, WIDE, 4 * WIDE, count] {
             let around = |failing: &[usize]| windows(failing, count, closed, beside);
             let meet = |a: Window, b: Window| a.meets(b, count, closed);
             let all = absorb(&mut done, &mut failing, meet, around);
-            let found = self.solve_each(demands, rules, &all, beside == WIDE, control);
+            let found = self.solve_each(demands, rules, &all, beside >= WIDE, control);
             let mut owners = owners(&failing, &all, count);
             failing.clear();
             for ((window, found), own) in all.into_iter().zip(found).zip(owners.drain(..)) {
