@@ -18,7 +18,8 @@ use crate::{
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum Energy {
-    /// `∫|Q''|²du`: the plain C² cubic wherever that keeps the shape.
+    /// `∫|Q''|²du`: the plain C² cubic wherever that keeps the shape. Where a mended stretch nearly stops,
+    /// [`Energy::Bending`] all the same: `∫|Q''|²du` does not see how the curve bends there.
     #[default]
     Parametric,
     /// `∫κ²ds`, with small terms that keep cusps and bulges out: the fairer curve where chords are

@@ -45,7 +45,8 @@ use crate::{
 ///     ``diagnostics.dropped`` lists the points that were left out, and ``bezier`` and ``knots`` know
 ///     nothing of them.
 /// energy : {"parametric", "bending"}
-///     What is minimised: ``∫|Q''|² du``, or ``∫κ² ds``, which is fairer where chords are uneven.
+///     What is minimised: ``∫|Q''|² du``, or ``∫κ² ds``, which is fairer where chords are uneven. A mended
+///     stretch that nearly stops minimises ``∫κ² ds`` in either case.
 /// criteria : str or iterable of str, optional
 ///     What to keep, as for ``NuSpline.shape_preserving``.
 /// resolution : float
