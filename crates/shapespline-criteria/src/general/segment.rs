@@ -37,6 +37,16 @@ impl Segment {
     /// From the parts of a piecewise Bézier curve; `offset` is the size of what was subtracted from
     /// its control points, whose digits they carry.
     pub(crate) fn new(parts: &[BezierPart], rational: bool, offset: f64) -> Self {
+        Self::known_to(parts, rational, |size| DIGITS * (1.0 + offset / size))
+    }
+
+    /// From parts whose control points are what is meant, to the last digit.
+    pub(crate) fn exact(parts: &[BezierPart], rational: bool) -> Self {
+        Self::known_to(parts, rational, |_| 0.0)
+    }
+
+    /// From parts whose control points may be off by so much, over their size.
+    fn known_to(parts: &[BezierPart], rational: bool, off: impl Fn(f64) -> f64) -> Self {
         let start = parts.first().and_then(|p| p.control.first()).copied();
         let start = start.map_or(DVec3::ZERO, |p| p.truncate() / p.w);
         let all = || parts.iter().flat_map(|p| p.control.iter());
@@ -46,7 +56,7 @@ impl Segment {
         let size = if size > 0.0 { size } else { 1.0 };
         let piece = |part: &BezierPart| {
             let points: Vec<DVec3> = part.control.iter().map(|p| moved(p) / size).collect();
-            let error = DIGITS * (1.0 + offset / size) + 4.0 * f64::EPSILON;
+            let error = off(size) + 4.0 * f64::EPSILON;
             let weights = || part.control.iter().map(|p| p.w / weight).collect();
             Piece {
                 local: part.local,

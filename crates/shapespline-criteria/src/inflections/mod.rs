@@ -260,7 +260,7 @@ fn pieces(curve: &PiecewiseBezier) -> Segment {
         let first = curve.piece(i)[0];
         let origin = first.truncate() / first.w;
         let parts = curve.between([breaks[i], breaks[i + 1]], origin);
-        Segment::new(&parts, curve.is_rational(), 0.0)
+        Segment::exact(&parts, curve.is_rational())
     };
     let pieces = (0..curve.pieces()).flat_map(|i| one(i).pieces).collect();
     Segment { pieces }

@@ -53,7 +53,8 @@ pub(super) fn is_well_posed(polygon: &DataPolygon) -> bool {
 }
 
 /// Whether velocities are numbers that leave room for squares, and given end tangents of a size that
-/// tension (at most 1e60) can make up for: not those of another unit altogether.
+/// tension (at most 1e60) can make up for: not those of another unit altogether, nor so short that with 15
+/// digits the curve stops.
 fn fits(polygon: &DataPolygon) -> bool {
     let velocity = |i: usize| length(polygon.chord(i)) / polygon.spacing(i);
     if !(0..polygon.segments()).all(|i| (1e-120..1e120).contains(&velocity(i))) {
@@ -63,7 +64,7 @@ fn fits(polygon: &DataPolygon) -> bool {
     [0, last].iter().zip(polygon.tangents()).all(|(&i, tangent)| {
         let Some(tangent) = tangent else { return true };
         let longer = length(tangent) * polygon.spacing(i) / length(polygon.chord(i));
-        (1e-20..1e20).contains(&longer)
+        (1e-12..1e20).contains(&longer)
     })
 }
 
