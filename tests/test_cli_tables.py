@@ -306,8 +306,11 @@ def test_any_arguments_are_heeded_or_refused_in_one_line(file, options, tmp_path
     if status == 2:
         assert len(lines) == 1, lines
         assert lines[0].startswith("shapespline")
-    for name, text in FILES.items():
-        assert (folder / name).read_text(encoding="utf-8") == text, "inputs stay as they are"
+    # Another table may be what the output is to be.
+    outputs = {value for _, value in options} - {file}
+    for name in FILES.keys() - outputs:
+        text = (folder / name).read_text(encoding="utf-8")
+        assert text == FILES[name], "inputs stay as they are"
 
 
 @pytest.mark.parametrize(
