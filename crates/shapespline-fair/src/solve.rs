@@ -33,8 +33,8 @@ const POLISH: usize = 10;
 /// Searches for segments that nearly stop.
 const ROUNDS: usize = 4;
 
-/// Finds a feasible chain (by all means if it is to be `thorough`), and brings its parametric energy down. The method that it took, or nothing
-/// where it takes a wider chain; the whole curve always has an answer.
+/// Finds a feasible chain (by all means if it is to be `thorough`), and brings its parametric energy down. The
+/// method that it took, or nothing where it takes a wider chain; the whole curve always has an answer.
 pub(crate) fn solve(
     demands: &Demands<'_>,
     chain: &mut Chain,

@@ -81,13 +81,13 @@ pub(crate) fn start(demands: &Demands<'_>, node: usize, scales: Scales) -> Node 
     }
 }
 
-/// Binormals of which the cosine of the angle is smaller than this hardly say on which side of the one the
-/// osculating plane at the other lies: the tilt has to.
+/// Where the cosine of the angle between two binormals is smaller than this, it is the tilt that decides on which
+/// side of the one the osculating plane at the other lies.
 const STEEP: f64 = 0.3;
 
-/// The direction, in the plane of the two chords at a node, in which the osculating plane's normal leaves their
-/// binormal: towards all sides that torsion asks for and, where the binormals at the other ends are nearly
-/// perpendicular, that these ask for. At most one long: shorter where they let it lean less.
+/// Where the normal of the osculating plane at a node leans, off the binormal and in the plane of the two chords:
+/// towards the sides that torsion asks for and, where the binormals at the other ends are nearly perpendicular,
+/// those that they ask for. Of length one, or shorter where less lean is allowed.
 fn tilt(demands: &Demands<'_>, node: usize, t: DVec3, [u, v]: [DVec3; 2]) -> DVec3 {
     let polygon = demands.checker.polygon();
     let normal = normalize(u.cross(v));
