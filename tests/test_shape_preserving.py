@@ -23,7 +23,7 @@ HARD = ("near collinear", "planar near collinear", "uneven chords")
 
 def count_of(curve_class, count):
     """Return of how many polygons a family fits: a fair curve takes some 100 times as long."""
-    return count if curve_class in cases.TENSE else scaled(count // 3)
+    return count if curve_class in cases.TENSE else scaled(count // 6)
 
 
 def assert_shape(curve, **options):
