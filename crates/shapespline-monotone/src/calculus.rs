@@ -8,6 +8,21 @@ use crate::integrals::{Pieces, whole};
 use crate::piecewise::PiecewisePolynomial;
 use crate::spline::{Kind, MonotoneSpline};
 
+/// A quadratic that is nowhere negative on [0, 1], from its Bernstein coefficients, such that rounding cannot make it
+/// negative there: `(r₀(1−t) − r₁t)² + 2(b + r₀r₁)t(1−t)` with the roots r of the end coefficients.
+fn signless([a0, b, a1]: [f64; 3], t: f64) -> f64 {
+    let (s, inside) = (1.0 - t, (0.0..=1.0).contains(&t));
+    if b >= 0.0 || !inside {
+        return (a0 * s + b * t) * s + (b * s + a1 * t) * t;
+    }
+    if t == 0.0 || t == 1.0 {
+        return if t == 0.0 { a0 } else { a1 };
+    }
+    let [r0, r1] = [a0, a1].map(|a| a.max(0.0).sqrt());
+    let difference = r0 * s - r1 * t;
+    difference * difference + 2.0 * (b + r0 * r1).max(0.0) * (t * s)
+}
+
 impl MonotoneSpline {
     /// Bernstein coefficients of the first derivative, scaled; its ends are the slopes to the last bit.
     fn slope_coefficients(&self, i: usize) -> ([f64; 5], usize) {
@@ -18,6 +33,11 @@ impl MonotoneSpline {
             Kind::Quartic { e } => {
                 let e = self.units.rise().scale(e[i]) / h;
                 ([d0, 2.0 * secant - d0 + e, 2.0 * secant - d1 - e, d1, 0.0], 3)
+            }
+            Kind::Cubic { z } => {
+                // From both ends: they differ by rounding.
+                let [z0, z1] = z[i];
+                ([d0, 0.5 * ((d0 + 0.5 * (h * z0)) + (d1 - 0.5 * (h * z1))), d1, 0.0, 0.0], 2)
             }
             Kind::Quintic { s } => {
                 let (b, c) = (d0 + 0.25 * (h * s[i]), d1 - 0.25 * (h * s[i + 1]));
@@ -36,6 +56,10 @@ impl MonotoneSpline {
                 let e = self.units.rise().scale(e[i]);
                 let (b, c) = (2.0 * dy - m0 + e, 2.0 * dy - m1 - e);
                 ([3.0 * (b - m0), 3.0 * (c - b), 3.0 * (m1 - c), 0.0], 2)
+            }
+            Kind::Cubic { z } => {
+                let [k0, k1] = z[i].map(|z| h * (h * z));
+                ([k0, k1, 0.0, 0.0], 1)
             }
             Kind::Quintic { s } => {
                 let (k0, k1) = (h * (h * s[i]), h * (h * s[i + 1]));
@@ -80,6 +104,7 @@ impl MonotoneSpline {
     fn stored_seconds(&self, i: usize) -> Option<[f64; 2]> {
         match &self.kind {
             Kind::Quintic { s } => Some([i, i + 1].map(|j| self.units.derivative_out(s[j], 2))),
+            Kind::Cubic { z } => Some(z[i].map(|z| self.units.derivative_out(z, 2))),
             Kind::Quartic { .. } => None,
         }
     }
@@ -106,7 +131,14 @@ impl MonotoneSpline {
             return s[usize::from(t == 1.0)];
         }
         let (c, degree) = self.unscaled_coefficients(i, nu);
-        self.derivative_out(i, bernstein::value(&c[..=degree], t), nu)
+        let value = if nu == 1 && matches!(self.kind, Kind::Cubic { .. }) {
+            let falling = self.y[i + 1] < self.y[i];
+            let size = signless([c[0], c[1], c[2]].map(|c| if falling { -c } else { c }), t);
+            if falling { -size } else { size }
+        } else {
+            bernstein::value(&c[..=degree], t)
+        };
+        self.derivative_out(i, value, nu)
     }
 
     /// What the derivative of order `nu` is beyond an end of the knots, where that is a polynomial.

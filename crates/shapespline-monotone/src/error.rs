@@ -72,6 +72,28 @@ pub enum MonotoneError {
         /// What it breaks: "must be 0 at a turn of the data" and so on.
         rule: &'static str,
     },
+    /// A held slope that no monotone function through the data has.
+    #[error("{argument}[{index}] {rule}, got {value}")]
+    HeldSlope {
+        /// The argument: "slopes" or "ends".
+        argument: &'static str,
+        /// The entry.
+        index: usize,
+        /// Its value.
+        value: f64,
+        /// What it breaks: "must be 0 at a turn of the data" and so on.
+        rule: &'static str,
+    },
+    /// A share of an interval or a secant that is out of its range.
+    #[error("{argument} must lie in {range}, got {value}")]
+    Share {
+        /// The argument.
+        argument: &'static str,
+        /// Its value.
+        value: f64,
+        /// What is allowed.
+        range: &'static str,
+    },
     /// A shape parameter that is negative, not a number, or so large that its product with a slope overflows.
     #[error("{argument}[{index}] = {value}; shape parameters must lie in [0, 1e300]")]
     Shape {

@@ -127,9 +127,11 @@ impl MonotoneSpline {
         let mut mode = mode.side(right);
         match (mode, nu) {
             (Continuation::Nan, _) => return f64::NAN,
-            (Continuation::Periodic(_), _) => {
-                let (_, x) = periodic::wrapped(x, self.x[0], self.x[last]);
-                return self.evaluate(x, nu, Some(Extrapolation::NAN));
+            (Continuation::Periodic(order), _) => {
+                let (count, x) = periodic::wrapped(x, self.x[0], self.x[last]);
+                let value = self.evaluate(x, nu, Some(Extrapolation::NAN));
+                let rises = order > 0 && nu == 0;
+                return if rises { value + count * (self.y[last] - self.y[0]) } else { value };
             }
             (Continuation::Taylor(0), 0) => return self.y[end],
             (Continuation::Taylor(1), 0) => {

@@ -44,10 +44,10 @@ impl MonotoneSpline {
 
     fn inverted(&self) -> Result<&Inverse, MonotoneError> {
         let inverse = self.cached.inverse.get_or_init(|| {
-            let y = self.y();
-            let falling = y[0] > y[1];
+            let (data, y) = (self.y(), &self.y);
+            let falling = data[0] > data[1];
             let breaks = |w: &[f64]| if falling { !(w[0] > w[1]) } else { !(w[0] < w[1]) };
-            let broken = y.windows(2).position(breaks).map(|i| i + 1);
+            let broken = data.windows(2).position(breaks).map(|i| i + 1);
             let turned = match broken {
                 None if falling => y.iter().map(|v| -v).collect(),
                 _ => Vec::new(),
@@ -61,7 +61,7 @@ impl MonotoneSpline {
     }
 
     fn inverse_searcher<'a>(&'a self, inverse: &'a Inverse, many: bool) -> Searcher<'a> {
-        let knots = if inverse.falling { &inverse.turned } else { self.y() };
+        let knots = if inverse.falling { &inverse.turned } else { &self.y };
         inverse.locator.searcher(knots, many)
     }
 
@@ -107,7 +107,7 @@ impl MonotoneSpline {
 
     /// The places of up to [`TILE`] values.
     fn inverse_tile(&self, search: Searcher<'_>, falling: bool, queries: &[f64]) -> [f64; TILE] {
-        let mut y = [self.y()[0]; TILE];
+        let mut y = [self.y[0]; TILE];
         y[..queries.len()].copy_from_slice(queries);
         let mut keys = y;
         if falling {
@@ -119,7 +119,7 @@ impl MonotoneSpline {
             let done = search.runs(&keys[..queries.len()], RUNS, |i, run| {
                 run::invert(
                     self.record(i),
-                    self.x()[i + 1],
+                    self.x[i + 1],
                     &y[run.clone()],
                     &mut out[run],
                     &mut room,
@@ -139,7 +139,7 @@ impl MonotoneSpline {
                 let record = self.record(segments[j]);
                 let sure = lanes.doubt[j] <= 0.0;
                 let t = if sure { lanes.t[j] } else { local(record, y[j], lanes.t[j]) };
-                let end = self.x()[segments[j] + 1];
+                let end = self.x[segments[j] + 1];
                 let x = if t < 0.5 { record.x0 + t * record.h } else { end - (1.0 - t) * record.h };
                 let x = if y[j] == record.y[0] { record.x0 } else { x };
                 let x = if y[j] == record.y[1] { end } else { x };
@@ -151,8 +151,8 @@ impl MonotoneSpline {
     }
 
     fn inverse_at(&self, i: usize, y: f64) -> f64 {
-        let n = self.y().len() - 1;
-        let (a, b) = (self.y()[0], self.y()[n]);
+        let n = self.y.len() - 1;
+        let (a, b) = (self.y[0], self.y[n]);
         if (a <= y && y <= b) || (b <= y && y <= a) {
             return self.invert_in(i, y);
         }
@@ -162,10 +162,10 @@ impl MonotoneSpline {
         let end = if (a < b) == (y < a) { 0 } else { n };
         let slope = self.d[end];
         match self.extrapolation().side(end > 0) {
-            Continuation::Taylor(0) => self.x()[end],
+            Continuation::Taylor(0) => self.x[end],
             Continuation::Taylor(1) if slope != 0.0 => {
-                let rise = self.units.rise().scale(y - self.y()[end]);
-                self.x()[end] + self.units.x().scale(rise / slope)
+                let rise = self.units.rise().scale(y - self.y[end]);
+                self.x[end] + self.units.x().scale(rise / slope)
             }
             _ => f64::NAN,
         }
@@ -178,12 +178,12 @@ impl MonotoneSpline {
             return record.x0;
         }
         if y == record.y[1] {
-            return self.x()[i + 1];
+            return self.x[i + 1];
         }
         let t = local(record, y, f64::NAN);
         let x =
-            if t < 0.5 { record.x0 + t * record.h } else { self.x()[i + 1] - (1.0 - t) * record.h };
-        x.max(record.x0).min(self.x()[i + 1])
+            if t < 0.5 { record.x0 + t * record.h } else { self.x[i + 1] - (1.0 - t) * record.h };
+        x.max(record.x0).min(self.x[i + 1])
     }
 }
 

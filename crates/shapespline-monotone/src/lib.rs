@@ -36,6 +36,7 @@ mod bernstein;
 mod beyond;
 pub mod bezier_like;
 mod calculus;
+mod cubic;
 mod data;
 mod energy;
 mod error;
@@ -72,6 +73,7 @@ mod windows;
 struct ReadmeDoctests;
 
 pub use bezier_like::BezierLike;
+pub use cubic::{CubicOptions, Ends, MonotoneCubic, minimal_bending};
 pub use energy::Fairness;
 pub use error::MonotoneError;
 pub use extrapolation::{Continuation, Extrapolation};

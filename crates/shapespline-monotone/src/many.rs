@@ -1,6 +1,7 @@
 //! Many fits in one call, in parallel: columns on one x, and rows with their own x.
 
 use crate::MonotoneError;
+use crate::cubic::{CubicOptions, MonotoneCubic};
 use crate::extrapolation::Extrapolation;
 use crate::quartic::{MonotoneQuartic, QuarticOptions};
 use crate::quintic::{MonotoneQuintic, QuinticOptions};
@@ -75,6 +76,16 @@ pub trait MonotoneMany: Sized + Send {
             .zip(fits)
             .for_each(|(o, fit)| fit.function().evaluate_into(queries, nu, extrapolate, o));
         out
+    }
+}
+
+impl MonotoneMany for MonotoneCubic {
+    type Options = CubicOptions;
+    fn make(x: &[f64], y: &[f64], options: &CubicOptions) -> Result<Self, MonotoneError> {
+        Self::new(x, y, options)
+    }
+    fn function(&self) -> &MonotoneSpline {
+        self.spline()
     }
 }
 

@@ -131,6 +131,7 @@ impl MonotoneQuartic {
         let spline = MonotoneSpline {
             x: own_x,
             y: own_y,
+            points: None,
             d,
             units,
             kind: Kind::Quartic { e },

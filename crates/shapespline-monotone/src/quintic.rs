@@ -53,7 +53,7 @@ impl Default for QuinticOptions {
     }
 }
 
-/// Which iteration made a [`MonotoneQuintic`].
+/// Which iteration made a [`MonotoneQuintic`] or a [`crate::MonotoneCubic`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Solver {
@@ -61,6 +61,8 @@ pub enum Solver {
     ActiveSet,
     /// The interior-point iteration on the exact cone of monotone quintics (optimal and given slopes).
     InteriorPoint,
+    /// Newton's method on the slopes (the cubic).
+    Newton,
 }
 
 /// How the optimisation went. The curve is monotone whatever these numbers say.

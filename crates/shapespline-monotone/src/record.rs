@@ -28,6 +28,13 @@ impl Record {
         [0.5 * (p + r) - even, 0.75 * (r - p) - odd, even, odd - 0.25 * (r - p)]
     }
 
+    /// The first two of q for a cubic from its second derivatives `k = h² y''` at the ends; the others are 0. They alone
+    /// decide it: between close knots the difference of y has few digits.
+    #[inline(always)]
+    pub(crate) fn cubic_form(k: [f64; 2]) -> [f64; 2] {
+        [0.25 * (k[0] + k[1]), (k[1] - k[0]) / 12.0]
+    }
+
     /// The first three of q for the quartic (3) from Δy, end slopes `m = h y'` and `e = ⅔(αm₀ − βm₁)`; the last is 0.
     #[inline(always)]
     pub(crate) fn quartic_form(dy: f64, m: [f64; 2], e: f64) -> [f64; 3] {

@@ -1,5 +1,6 @@
-//! The interpolant both schemes make: data, slopes, and one evaluation record a segment.
+//! The interpolant that all schemes make: data, slopes, and one evaluation record per piece.
 
+use crate::cubic::Pieces;
 use crate::data::{Units, first};
 use crate::extrapolation::Extrapolation;
 use crate::integrals::Lazy;
@@ -17,18 +18,34 @@ pub(crate) enum Kind {
     Quartic { e: Vec<f64> },
     /// Second derivatives at the knots, scaled.
     Quintic { s: Vec<f64> },
+    /// Second derivatives at both ends of every piece, scaled.
+    Cubic { z: Vec<[f64; 2]> },
 }
 
-/// A piecewise quartic (C¹) or quintic (C²) through data, monotone on every segment.
+/// The data of an interpolant that has knots between them.
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(crate) struct Points {
+    x: Vec<f64>,
+    y: Vec<f64>,
+    /// The knot of every point.
+    nodes: Vec<usize>,
+}
+
+/// A piecewise cubic (C²), quartic (C¹) or quintic (C²) through data, monotone on every segment.
 ///
-/// Values at knots are the data to the last bit, values between them stay between the two data values. Immutable,
-/// `Send + Sync`, serialisable with the feature `serde`. [`crate::MonotoneQuartic`] and [`crate::MonotoneQuintic`] dereference to it.
+/// Values at the points are the data to the last bit, values between them stay between the two data values. Immutable,
+/// `Send + Sync`, serialisable with the feature `serde`. [`crate::MonotoneCubic`], [`crate::MonotoneQuartic`] and
+/// [`crate::MonotoneQuintic`] dereference to it.
 #[derive(Debug, Clone)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(try_from = "Stored", into = "Stored"))]
 pub struct MonotoneSpline {
+    /// The knots and the values there.
     pub(crate) x: Vec<f64>,
     pub(crate) y: Vec<f64>,
+    /// The data, unless they are at the knots.
+    pub(crate) points: Option<Box<Points>>,
     /// Slopes at the knots. These and second derivatives are kept in scaled units: in those of the data they may leave
     /// the range of double precision where values and integrals do not.
     pub(crate) d: Vec<f64>,
@@ -59,6 +76,7 @@ impl Clone for Cached {
 struct Stored {
     x: Vec<f64>,
     y: Vec<f64>,
+    points: Option<Box<Points>>,
     d: Vec<f64>,
     kind: Kind,
     records: Vec<Record>,
@@ -68,8 +86,8 @@ struct Stored {
 #[cfg(feature = "serde")]
 impl From<MonotoneSpline> for Stored {
     fn from(s: MonotoneSpline) -> Self {
-        let MonotoneSpline { x, y, d, kind, records, extrapolate, .. } = s;
-        Self { x, y, d, kind, records, extrapolate }
+        let MonotoneSpline { x, y, points, d, kind, records, extrapolate, .. } = s;
+        Self { x, y, points, d, kind, records, extrapolate }
     }
 }
 
@@ -81,14 +99,18 @@ impl TryFrom<Stored> for MonotoneSpline {
         let extra = match &s.kind {
             Kind::Quartic { e } => e.len() + 1,
             Kind::Quintic { s } => s.len(),
+            Kind::Cubic { z } => z.len() + 1,
         };
+        if !s.points.as_ref().is_none_or(|points| points.are_sound(n)) {
+            return Err("stored data are inconsistent".to_owned());
+        }
         if n < 2 || s.y.len() != n || s.d.len() != n || extra != n || s.records.len() + 1 != n {
             return Err("stored interpolant is inconsistent".to_owned());
         }
         let units =
             Units::of(&s.x, &s.y).map_err(|error| format!("stored interpolant: {error}"))?;
-        let Stored { x, y, d, kind, records, extrapolate } = s;
-        Ok(Self { x, y, d, units, kind, records, extrapolate, cached: Cached::default() })
+        let Stored { x, y, points, d, kind, records, extrapolate } = s;
+        Ok(Self { x, y, points, d, units, kind, records, extrapolate, cached: Cached::default() })
     }
 }
 
@@ -112,7 +134,35 @@ impl MonotoneSpline {
         };
         let records = record::records(x.len() - 1, tile);
         let kind = Kind::Quintic { s };
-        Self { x, y, d, units, kind, records, extrapolate, cached: Cached::default() }
+        let (points, cached) = (None, Cached::default());
+        Self { x, y, points, d, units, kind, records, extrapolate, cached }
+    }
+
+    /// Of cubic pieces with knots between the data.
+    pub(crate) fn cubic(
+        units: Units,
+        data: [&[f64]; 2],
+        pieces: Pieces,
+        extrapolate: Extrapolation,
+    ) -> Self {
+        let Pieces { x, y, slope: d, second: z, nodes, .. } = pieces;
+        let tile = |start: usize, count: usize| {
+            cubic_records(units, &x[start..], &y[start..], &z[start..], count)
+        };
+        let records = record::records(x.len() - 1, tile);
+        let own = nodes.len() < x.len();
+        let points = own.then(|| {
+            let [x, y] = data.map(<[f64]>::to_vec);
+            Box::new(Points { x, y, nodes })
+        });
+        let (kind, cached) = (Kind::Cubic { z }, Cached::default());
+        Self { x, y, points, d, units, kind, records, extrapolate, cached }
+    }
+
+    /// The segment of the data in which a knot lies.
+    pub(crate) fn segment_of_knot(&self, knot: usize) -> usize {
+        let Some(points) = &self.points else { return knot };
+        points.nodes.partition_point(|node| *node <= knot).saturating_sub(1)
     }
 
     /// The first knot whose slope or second derivative is beyond double precision in the data's units.
@@ -121,35 +171,61 @@ impl MonotoneSpline {
             |nu: usize| move |_: usize, v: f64| !self.units.derivative_out(v, nu).is_finite();
         let seconds = match &self.kind {
             Kind::Quintic { s } => first(s, beyond(2)),
+            Kind::Cubic { z } => first(z.as_flattened(), beyond(2)).map(|i| i / 2),
             Kind::Quartic { .. } => None,
         };
         seconds.or_else(|| first(&self.d, beyond(1)))
     }
 
-    /// The abscissae.
+    /// The abscissae of the data.
     #[must_use]
     pub fn x(&self) -> &[f64] {
+        self.points.as_ref().map_or(&self.x, |points| &points.x)
+    }
+
+    /// The ordinates of the data.
+    #[must_use]
+    pub fn y(&self) -> &[f64] {
+        self.points.as_ref().map_or(&self.y, |points| &points.y)
+    }
+
+    /// The knots: the abscissae of the data, and of cubics those between them.
+    #[must_use]
+    pub fn knots(&self) -> &[f64] {
         &self.x
     }
 
-    /// The ordinates.
-    #[must_use]
-    pub fn y(&self) -> &[f64] {
-        &self.y
+    /// The knot of every point, if not all knots are points.
+    fn nodes(&self) -> Option<&[usize]> {
+        self.points.as_ref().map(|points| &points.nodes[..])
     }
 
-    /// Slopes at the knots. O(N).
+    /// Slopes at the points. O(N).
     #[must_use]
     pub fn slopes(&self) -> Vec<f64> {
-        self.units.derivatives_out(&self.d, 1)
+        match self.nodes() {
+            None => self.units.derivatives_out(&self.d, 1),
+            Some(nodes) => nodes.iter().map(|k| self.units.derivative_out(self.d[*k], 1)).collect(),
+        }
     }
 
-    /// Second derivatives at the knots: of the quartic, which is only C¹, from the right (at the last knot from the
-    /// left). O(N).
+    /// Second derivatives at the points: where they jump (the quartic, which is only C¹; the cubic without layers, at
+    /// turns and flats) from the right, at the last point from the left. O(N).
     #[must_use]
     pub fn second_derivatives(&self) -> Vec<f64> {
         match &self.kind {
             Kind::Quintic { s } => self.units.derivatives_out(s, 2),
+            Kind::Cubic { z } => {
+                let at = |k: usize| match z.get(k) {
+                    Some([after, _]) => *after,
+                    None => z[k - 1][1],
+                };
+                let seconds: Vec<f64> = match self.nodes() {
+                    None => (0..=z.len()).map(at).collect(),
+                    Some(nodes) => nodes.iter().map(|k| at(*k)).collect(),
+                };
+                self.units.derivatives_out(&seconds, 2)
+            }
             Kind::Quartic { .. } => {
                 let n = self.records.len();
                 (0..=n).map(|i| self.derivative_at(i.min(n - 1), self.x[i], 2)).collect()
@@ -157,12 +233,13 @@ impl MonotoneSpline {
         }
     }
 
-    /// The degree of the pieces: 4 or 5.
+    /// The degree of the pieces: 3, 4 or 5.
     #[must_use]
     pub fn degree(&self) -> usize {
         match self.kind {
             Kind::Quartic { .. } => 4,
             Kind::Quintic { .. } => 5,
+            Kind::Cubic { .. } => 3,
         }
     }
 
@@ -172,7 +249,7 @@ impl MonotoneSpline {
         self.extrapolate
     }
 
-    /// Bernstein coefficients of the pieces, `degree + 1` a segment (equations (15) and (16)), for `BPoly`.
+    /// Bernstein coefficients of the pieces, `degree + 1` per piece (equations (15) and (16)), for `BPoly`.
     #[must_use]
     pub fn bernstein_coefficients(&self) -> Vec<f64> {
         let mut out = Vec::with_capacity(self.records.len() * (self.degree() + 1));
@@ -206,6 +283,7 @@ impl MonotoneSpline {
                 let middle = 0.5 * y0 + 0.5 * y1 + 0.25 * e[i];
                 [y0, y0 + 0.25 * m0, middle, y1 - 0.25 * m1, y1, 0.0]
             }
+            Kind::Cubic { .. } => [y0, y0 + m0 / 3.0, y1 - m1 / 3.0, y1, 0.0, 0.0],
             Kind::Quintic { s } => {
                 let (h, unit) = (self.scaled_length(i), self.units.y());
                 let (k0, k1) = (unit.scale(h * (h * s[i])), unit.scale(h * (h * s[i + 1])));
@@ -247,4 +325,27 @@ fn quintic_records(
         [q[0][j], q[1][j], q[2][j], q[3][j]] = Record::hermite_form(y[j + 1] - y[j], m, k);
     }
     Record::assembled(x, y, &q)
+}
+
+/// The records of the first `n` cubic pieces, those of a tile.
+fn cubic_records(units: Units, x: &[f64], y: &[f64], z: &[[f64; 2]], n: usize) -> [Record; TILE] {
+    let (unit, to_x) = (units.y(), units.spacing());
+    let mut q = [[0.0; TILE]; 4];
+    for j in 0..n {
+        let h = to_x.scale(x[j + 1] - x[j]);
+        let k = z[j].map(|z| unit.scale(h * (h * z)));
+        [q[0][j], q[1][j]] = Record::cubic_form(k);
+    }
+    Record::assembled(&x[..=n], &y[..=n], &q)
+}
+
+#[cfg(feature = "serde")]
+impl Points {
+    /// Whether data that were read are points among `knots` knots.
+    fn are_sound(&self, knots: usize) -> bool {
+        let n = self.nodes.len();
+        let ends = n >= 2 && self.nodes[0] == 0 && self.nodes[n - 1] + 1 == knots;
+        let increase = self.nodes.windows(2).all(|w| w[0] < w[1]);
+        ends && increase && self.x.len() == n && self.y.len() == n
+    }
 }

@@ -61,6 +61,7 @@ impl MonotoneDiagnostics {
         let solver = match d.solver {
             Solver::ActiveSet => "active-set",
             Solver::InteriorPoint => "interior-point",
+            Solver::Newton => "newton",
         };
         Self {
             solver: solver.to_owned(),

@@ -1,0 +1,270 @@
+//! The monotone C² cubic: of all monotone functions through the data the one with the least bending energy.
+
+use crate::MonotoneError;
+use crate::data::{Data, out_of_range};
+use crate::energy::Fairness;
+use crate::extrapolation::{Continuation, Extrapolation};
+use crate::interrupt::{GoOn, ask};
+use crate::quintic::{Diagnostics, Solver};
+use crate::spline::MonotoneSpline;
+use std::ops::{ControlFlow, Deref};
+
+mod ends;
+mod layer;
+mod piece;
+mod pieces;
+mod problem;
+mod stretch;
+#[cfg(test)]
+mod tests;
+
+pub use ends::Ends;
+pub(crate) use pieces::Pieces;
+use problem::{Layers, Problem};
+
+/// How a [`MonotoneCubic`] is made.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CubicOptions {
+    /// What holds at the two ends.
+    pub ends: Ends,
+    /// Slopes at the points, one per point; NaN where they are free.
+    pub slopes: Option<Vec<f64>>,
+    /// The share of an interval beside a turn or a flat in which the second derivative falls to its value there, from 0
+    /// to 1/4. With 0 the least energy itself, which is C¹ at turns and flats; with more it is C² everywhere.
+    pub layer: f64,
+    /// The share of the smallest secant of an interval and its neighbours below which the slope never falls there where
+    /// the data are strictly monotone, from 0 to less than 1.
+    pub min_slope: f64,
+    /// What it is outside the data. [`Extrapolation::PERIODIC`] with [`Ends::Periodic`] repeats the function up to the
+    /// rise over a period.
+    pub extrapolate: Extrapolation,
+}
+
+impl Default for CubicOptions {
+    fn default() -> Self {
+        Self {
+            ends: Ends::Estimated,
+            slopes: None,
+            layer: 1.0 / 16.0,
+            min_slope: 0.0,
+            extrapolate: Extrapolation::default(),
+        }
+    }
+}
+
+/// The largest share of a layer.
+const LARGEST_LAYER: f64 = 0.25;
+/// Rounds of making second derivatives at turns smaller; the second has never been needed twice.
+const ROUNDS: usize = 8;
+
+/// The monotone interpolant of least bending energy `∫ f''² dx`: a C² cubic spline with at most two knots between points.
+///
+/// With [`Ends::Natural`] and layer 0 it is the least of **all** monotone functions through the data, not only of
+/// splines. Between two points it is one cubic, or a parabola of slope that falls to 0, a level part and one that rises
+/// (closed forms); the slopes at the points are the only unknowns, of a convex problem that Newton's method on a
+/// tridiagonal system solves to rounding. [`Self::lower_bound`] and [`Self::interval_gaps`] prove it. Data that are not
+/// monotone are fitted piecewise: slope 0 at turns and flats, monotone on every interval where the data are.
+///
+/// Andersson and Elfving (1991), *Interpolation and approximation by monotone cubic splines*, J. Approx. Theory 66,
+/// 302–333, have the theory of this functional. O(N).
+#[derive(Debug, Clone)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct MonotoneCubic {
+    spline: MonotoneSpline,
+    diagnostics: Diagnostics,
+    level: Vec<usize>,
+    lower_bound: f64,
+    gaps: Vec<f64>,
+}
+
+impl Deref for MonotoneCubic {
+    type Target = MonotoneSpline;
+    fn deref(&self) -> &MonotoneSpline {
+        &self.spline
+    }
+}
+
+impl MonotoneCubic {
+    /// Interpolate `y` at the increasing `x`.
+    ///
+    /// # Errors
+    /// [`MonotoneError`] naming argument, index and value: fewer than two points, lengths that differ, NaN or
+    /// infinity, x not increasing, spreads, secants or curvatures that overflow, given slopes that no monotone function
+    /// through the data has, shares out of range.
+    pub fn new(x: &[f64], y: &[f64], options: &CubicOptions) -> Result<Self, MonotoneError> {
+        Self::new_with(x, y, options, &|| ControlFlow::Continue(()))
+    }
+
+    /// As [`MonotoneCubic::new`], with a question whether to go on, which is asked every few milliseconds (from any
+    /// thread).
+    ///
+    /// # Errors
+    /// As [`MonotoneCubic::new`], and [`MonotoneError::Interrupted`] where the answer was no.
+    pub fn new_with(
+        x: &[f64],
+        y: &[f64],
+        options: &CubicOptions,
+        go_on: &(dyn Fn() -> ControlFlow<()> + Sync),
+    ) -> Result<Self, MonotoneError> {
+        check_share("layer", options.layer, |s| (0.0..=LARGEST_LAYER).contains(&s), "[0, 0.25]")?;
+        check_share("min_slope", options.min_slope, |s| (0.0..1.0).contains(&s), "[0, 1)")?;
+        let data = Data::new(x, y)?;
+        ask(go_on)?;
+        data.check_curvature(y)?;
+        let (problem, first) = problem(&data, options)?;
+        let found = problem.solve(None, go_on)?;
+        let own = first..first + data.len();
+        let (energies, gaps) = problem.certificate(&found.m);
+        let sum = |values: &[f64]| values[own.clone()].iter().sum::<f64>();
+        let (least, gap) = (sum(&energies), sum(&gaps));
+        let Layered { m, layers, solves, converged } =
+            layered(&problem, found.m, options.layer, go_on)?;
+        let units = data.units();
+        let (pieces, energy) = Pieces::new(&problem, units, [x, y], &m, layers.as_ref(), first);
+        ask(go_on)?;
+        let out = |energy: f64| units.energy_out(Fairness::Bending, energy);
+        let diagnostics = Diagnostics {
+            solver: Solver::Newton,
+            iterations: found.solves + solves,
+            active: pieces.level.len(),
+            kkt_residual: if gap > 0.0 { gap / least } else { 0.0 },
+            converged: found.converged && converged,
+            certified: true,
+            energy: out(energy),
+            limited: Vec::new(),
+        };
+        let gaps = gaps[own].iter().map(|gap| out(*gap)).collect();
+        let (level, lower_bound) = (pieces.level.clone(), out((least - gap).max(0.0)));
+        let spline = MonotoneSpline::cubic(units, [x, y], pieces, extrapolation(options, x, y));
+        // A second derivative beyond double precision: refuse rather than hand out infinities.
+        if let Some(i) = spline.overflow() {
+            let i = spline.segment_of_knot(i);
+            return Err(out_of_range("second derivative", "y", i, y[i]));
+        }
+        Ok(Self { spline, diagnostics, level, lower_bound, gaps })
+    }
+
+    /// How the fit went.
+    #[must_use]
+    pub fn diagnostics(&self) -> &Diagnostics {
+        &self.diagnostics
+    }
+
+    /// `∫ f''² dx`, +∞ if it overflows.
+    #[must_use]
+    pub fn bending_energy(&self) -> f64 {
+        self.diagnostics.energy
+    }
+
+    /// The intervals in which the function is level for a while between two parabolas of slope, increasing.
+    #[must_use]
+    pub fn level_pieces(&self) -> &[usize] {
+        &self.level
+    }
+
+    /// A bound from below of the bending energy of every monotone function through the data with the same slopes at
+    /// held ends and given points (by Fenchel's duality, from the second derivatives): what is least without layers.
+    #[must_use]
+    pub fn lower_bound(&self) -> f64 {
+        self.lower_bound
+    }
+
+    /// By how much every interval exceeds its part of [`Self::lower_bound`] at most, without layers.
+    #[must_use]
+    pub fn interval_gaps(&self) -> &[f64] {
+        &self.gaps
+    }
+
+    /// The interpolant without its diagnostics.
+    #[must_use]
+    pub fn spline(&self) -> &MonotoneSpline {
+        &self.spline
+    }
+}
+
+/// The least bending energy `∫ f''² dx` of any monotone function through the data (monotone wherever they are), +∞ if it
+/// overflows. O(N).
+///
+/// # Errors
+/// As [`MonotoneCubic::new`].
+///
+/// ```
+/// let least = shapespline_monotone::minimal_bending(&[0.0, 1.0, 2.0], &[0.0, 1.0, 2.0])?;
+/// assert_eq!(least, 0.0);
+/// # Ok::<(), shapespline_monotone::MonotoneError>(())
+/// ```
+pub fn minimal_bending(x: &[f64], y: &[f64]) -> Result<f64, MonotoneError> {
+    let options = CubicOptions { ends: Ends::Natural, layer: 0.0, ..CubicOptions::default() };
+    MonotoneCubic::new(x, y, &options).map(|f| f.bending_energy())
+}
+
+/// The intervals, held slopes and floors; the index of the first interval, which follows copies of the last ones where
+/// the data are periodic.
+fn problem(data: &Data, options: &CubicOptions) -> Result<(Problem, usize), MonotoneError> {
+    let periodic = options.ends == Ends::Periodic;
+    let (mut problem, first) =
+        if periodic { ends::repeated(data) } else { (Problem::new(data), 0) };
+    if let Some(slopes) = &options.slopes {
+        ends::hold_given(&mut problem, data, slopes, first)?;
+    }
+    if !periodic {
+        ends::hold_ends(&mut problem, data, options)?;
+    }
+    if options.min_slope > 0.0 {
+        problem.set_floor(options.min_slope);
+        ends::check_floor(&mut problem, data, options, first)?;
+    }
+    Ok((problem, first))
+}
+
+struct Layered {
+    m: Vec<f64>,
+    layers: Option<Layers>,
+    solves: usize,
+    converged: bool,
+}
+
+/// Layers beside turns and flats, and the slopes that go with them.
+fn layered(
+    problem: &Problem,
+    mut m: Vec<f64>,
+    share: f64,
+    go_on: GoOn<'_>,
+) -> Result<Layered, MonotoneError> {
+    if share == 0.0 || !(0..problem.held.len()).any(|i| problem.is_level(i)) {
+        return Ok(Layered { m, layers: None, solves: 0, converged: true });
+    }
+    let mut layers = problem.layers(share, &m);
+    let mut solves = 0;
+    for _ in 0..ROUNDS {
+        let found = problem.solve(Some((&layers, &m)), go_on)?;
+        (m, solves) = (found.m, solves + found.solves);
+        if !problem.flatten(&mut layers, &m) {
+            return Ok(Layered { m, layers: Some(layers), solves, converged: found.converged });
+        }
+    }
+    // With 0 at every turn no slope can fall below 0.
+    layers.second.fill(0.0);
+    let found = problem.solve(Some((&layers, &m)), go_on)?;
+    Ok(Layered { m: found.m, layers: Some(layers), solves, converged: found.converged })
+}
+
+/// What a function outside its data is asked to be: one with periodic ends repeats up to its rise over a period.
+fn extrapolation(options: &CubicOptions, x: &[f64], y: &[f64]) -> Extrapolation {
+    let rises = options.ends == Ends::Periodic && y[0] != y[x.len() - 1];
+    let side = |side| match side {
+        Continuation::Periodic(0) if rises => Continuation::Periodic(1),
+        other => other,
+    };
+    let Extrapolation { below, above } = options.extrapolate;
+    Extrapolation { below: side(below), above: side(above) }
+}
+
+fn check_share(
+    argument: &'static str,
+    value: f64,
+    allowed: impl Fn(f64) -> bool,
+    range: &'static str,
+) -> Result<(), MonotoneError> {
+    if allowed(value) { Ok(()) } else { Err(MonotoneError::Share { argument, value, range }) }
+}

@@ -1,0 +1,224 @@
+//! The cubic pieces of a least-energy interpolant: knots, values, slopes and second derivatives.
+
+use super::layer::between;
+use super::piece::Level;
+use super::problem::{Layers, Problem};
+use crate::data::{Units, parts};
+
+/// Pieces over the knots, as [`crate::MonotoneSpline`] takes them: slopes and second derivatives are signed and scaled.
+#[derive(Debug, Default)]
+pub(crate) struct Pieces {
+    pub(crate) x: Vec<f64>,
+    pub(crate) y: Vec<f64>,
+    pub(crate) slope: Vec<f64>,
+    /// At both ends of every piece.
+    pub(crate) second: Vec<[f64; 2]>,
+    /// The knots of the points.
+    pub(crate) nodes: Vec<usize>,
+    /// Intervals with a level part.
+    pub(crate) level: Vec<usize>,
+}
+
+/// What lies between two points, in the direction of the data: inner knots and what holds there.
+#[derive(Debug, Clone, Copy, Default)]
+struct Interval {
+    knots: usize,
+    /// Distances from the nearer end, scaled; of the first knot from the left, of the last from the right.
+    width: [f64; 2],
+    /// From the point before, as a part of the rise.
+    rise: [f64; 2],
+    slope: [f64; 2],
+    second: [[f64; 2]; 3],
+    /// Whether the first knot belongs to the right end.
+    right: bool,
+    /// Whether it is level for a while.
+    level: bool,
+}
+
+impl Interval {
+    /// Interval i of a problem with slopes m.
+    fn new(problem: &Problem, i: usize, m: &[f64], layers: Option<&Layers>) -> Self {
+        let (d, h) = (problem.d[i], problem.h[i]);
+        if d == 0.0 {
+            return Self::default();
+        }
+        if let Some(layers) = layers
+            && let Some(layered) = Self::layered(problem, i, m, layers)
+        {
+            return layered;
+        }
+        let piece = problem.piece(i, m);
+        let [z0, z1] = piece.ends();
+        if !piece.level {
+            return Self { second: [[z0, z1], [0.0; 2], [0.0; 2]], ..Self::default() };
+        }
+        let c = problem.floor.get(i).copied().unwrap_or(0.0);
+        let own = d - c * h;
+        let level = Level::new([m[i], m[i + 1]].map(|m| (m - c).max(0.0).sqrt()), own);
+        let [u0, u1] = level.widths;
+        let rise = |t: f64| (c * t + own * level.share) / d;
+        Self {
+            knots: 2,
+            width: [u0, u1],
+            rise: [rise(u0), rise(h - u1)],
+            slope: [c; 2],
+            second: [[z0, 0.0], [0.0; 2], [0.0, z1]],
+            right: false,
+            level: true,
+        }
+    }
+
+    /// With layers beside ends of slope 0, where there are any and they are needed.
+    fn layered(problem: &Problem, i: usize, m: &[f64], layers: &Layers) -> Option<Self> {
+        let (d, h, theta) = (problem.d[i], problem.h[i], layers.share);
+        let level = [problem.is_level(i), problem.is_level(i + 1)];
+        let own = [layers.second[i], layers.second[i + 1]];
+        // Of h²y'' at the node and the knot: rise and slope over the layer.
+        let rise = |s: f64, p: f64| theta * theta * (2.0 * s + p) / (6.0 * d);
+        let slope = |s: f64, p: f64| 0.5 * theta * (s + p) / h;
+        let square = h * h;
+        if level == [true, true] {
+            let [p, q] = between(theta, own, d, h);
+            let [s0, s1] = own.map(|s| s * square);
+            let z = |a: f64, b: f64| [a / square, b / square];
+            return Some(Self {
+                knots: 2,
+                width: [theta * h; 2],
+                rise: [rise(s0, p), 1.0 - rise(s1, -q)],
+                slope: [slope(s0, p), slope(s1, -q)],
+                second: [z(s0, p), z(p, q), z(q, -s1)],
+                ..Self::default()
+            });
+        }
+        let right = level[1];
+        if !(level[0] || right) {
+            return None;
+        }
+        let layer = problem.layer(layers, i + usize::from(right))?;
+        let far = m[i + usize::from(!right)];
+        if layer.is_level(far, d, h) {
+            return None;
+        }
+        let seconds = layer.seconds(far, d, h);
+        let (s, p, q) = (layer.second, seconds.knot / square, seconds.far / square);
+        let over = rise(s * square, seconds.knot);
+        let mut interval = Self {
+            knots: 1,
+            width: [theta * h, 0.0],
+            rise: [over, 0.0],
+            slope: [slope(s * square, seconds.knot), 0.0],
+            second: [[s, p], [p, q], [0.0; 2]],
+            right,
+            level: false,
+        };
+        if right {
+            interval.rise[0] = 1.0 - over;
+            interval.second = [[-q, -p], [-p, -s], [0.0; 2]];
+        }
+        Some(interval)
+    }
+
+    /// The bending energy `∫ y''² dx` between widths that the knots cut, scaled.
+    fn energy(&self, h: f64) -> f64 {
+        let over = |h: f64, [a, b]: [f64; 2]| h / 3.0 * (a * a + a * b + b * b);
+        let [u0, u1] = self.width;
+        match (self.knots, self.right) {
+            (0, _) => over(h, self.second[0]),
+            (1, false) => over(u0, self.second[0]) + over(h - u0, self.second[1]),
+            (1, true) => over(h - u0, self.second[0]) + over(u0, self.second[1]),
+            _ => {
+                let middle = over((h - u0 - u1).max(0.0), self.second[1]);
+                over(u0, self.second[0]) + middle + over(u1, self.second[2])
+            }
+        }
+    }
+}
+
+impl Pieces {
+    /// Those of a problem's intervals between the points given, and their bending energy in scaled units.
+    pub(crate) fn new(
+        problem: &Problem,
+        units: Units,
+        [x, y]: [&[f64]; 2],
+        m: &[f64],
+        layers: Option<&Layers>,
+        first: usize,
+    ) -> (Self, f64) {
+        let n = x.len() - 1;
+        let made = parts(n, |part| {
+            let mut own = Self::default();
+            let mut energy = 0.0;
+            for i in part {
+                let k = first + i;
+                let interval = Interval::new(problem, k, m, layers);
+                energy += interval.energy(problem.h[k]);
+                if interval.level {
+                    own.level.push(i);
+                }
+                own.push(&interval, units, problem.sign[k], [x[i], x[i + 1]], [y[i], y[i + 1]]);
+                // The slope at the point before is known here.
+                let at = own.nodes[own.nodes.len() - 1];
+                own.slope[at] = signed_slope(problem, k, m);
+            }
+            (own, energy)
+        });
+        let mut all = Self::default();
+        let mut energy = 0.0;
+        for (part, own) in made {
+            let start = all.x.len();
+            all.nodes.extend(part.nodes.iter().map(|k| start + k));
+            all.level.extend_from_slice(&part.level);
+            all.x.extend_from_slice(&part.x);
+            all.y.extend_from_slice(&part.y);
+            all.slope.extend_from_slice(&part.slope);
+            all.second.extend_from_slice(&part.second);
+            energy += own;
+        }
+        all.nodes.push(all.x.len());
+        all.x.push(x[n]);
+        all.y.push(y[n]);
+        all.slope.push(signed_slope(problem, first + n, m));
+        (all, energy)
+    }
+
+    /// The point before an interval and the inner knots.
+    fn push(&mut self, interval: &Interval, units: Units, sign: f64, x: [f64; 2], y: [f64; 2]) {
+        self.nodes.push(self.x.len());
+        self.x.push(x[0]);
+        self.y.push(y[0]);
+        self.slope.push(0.0);
+        let mut from = 0;
+        for k in 0..interval.knots {
+            let width = units.x().scale(interval.width[k]);
+            let from_right = if interval.knots == 1 { interval.right } else { k == 1 };
+            let knot = if from_right { x[1] - width } else { x[0] + width };
+            // A parabola shorter than an ulp becomes one of an ulp; where there is no room it is left out.
+            let before = self.x[self.x.len() - 1];
+            let knot = if knot <= before { before.next_up() } else { knot };
+            let knot = if knot >= x[1] { x[1].next_down() } else { knot };
+            if knot <= before {
+                continue;
+            }
+            let rise = interval.rise[k].clamp(0.0, 1.0);
+            // From the nearer value, so that small rises keep their digits.
+            let value = if rise <= 0.5 {
+                y[0] + (y[1] - y[0]) * rise
+            } else {
+                y[1] - (y[1] - y[0]) * (1.0 - rise)
+            };
+            self.second.push(interval.second[k].map(|z| sign * z));
+            self.x.push(knot);
+            self.y.push(value);
+            self.slope.push(sign * interval.slope[k]);
+            from = k + 1;
+        }
+        self.second.push(interval.second[from].map(|z| sign * z));
+    }
+}
+
+/// The slope at node i with its sign; 0 at turns and flats.
+fn signed_slope(problem: &Problem, i: usize, m: &[f64]) -> f64 {
+    let n = problem.sign.len();
+    let sign = problem.sign[i.min(n - 1)];
+    if m[i] == 0.0 { 0.0 } else { sign * m[i] }
+}

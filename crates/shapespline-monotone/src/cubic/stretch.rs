@@ -1,0 +1,311 @@
+//! The slopes of least energy on a stretch of data: scalar sweeps, then Newton's method on a tridiagonal system.
+//!
+//! A stretch is a run of intervals between two nodes whose slopes are held (turns and flats, given slopes) or that end
+//! the data; what lies beyond has no influence on it. The energy is convex in the slopes, and the system scaled by its
+//! diagonal has a condition of at most 4 whatever the spacing: the influence of a node falls by a third at least from
+//! node to node.
+
+use super::layer::Layer;
+use super::piece::Piece;
+
+/// Red–black sweeps that give Newton's method its start, and steps of a node in each.
+const SWEEPS: usize = 3;
+const SWEEP_STEPS: usize = 6;
+/// Relative steps at which a sweep leaves a node.
+const SWEEP_ENOUGH: f64 = 1.0 / 64.0;
+/// Steps of Newton's method at most; 12 are the most ever seen.
+const STEPS: usize = 100;
+/// Steps of every slope, relative to it or to the smaller secant beside it, at which Newton's method ends. It
+/// converges quadratically: what is left then is rounding.
+const ENOUGH: f64 = 1e-10;
+/// Slopes below this part of the smaller secant beside them are 0.
+const NOTHING: f64 = 7.888_609_052_210_118e-31; // 2⁻¹⁰⁰
+/// What the energy may rise by rounding, relative to it.
+const ALLOWANCE: f64 = 1e-13;
+const TINY_ROOT: f64 = 1e-160;
+
+/// A stretch, in the direction of its data.
+pub(crate) struct Stretch<'a> {
+    /// Widths of the intervals.
+    pub(crate) h: &'a [f64],
+    /// Rises, positive.
+    pub(crate) d: &'a [f64],
+    /// The least slope of every interval; empty: 0.
+    pub(crate) floor: &'a [f64],
+    /// Whether the slopes at the two ends are held.
+    pub(crate) held: [bool; 2],
+    /// Layers beside ends of slope 0.
+    pub(crate) layer: [Option<Layer>; 2],
+}
+
+/// Sizes of quantities at a point in the space of slopes.
+#[derive(Default)]
+struct Model {
+    energy: Vec<f64>,
+    gradient: Vec<f64>,
+    diagonal: Vec<f64>,
+    off_diagonal: Vec<f64>,
+    singular: Vec<f64>,
+}
+
+/// Memory that stretches use one after another.
+#[derive(Default)]
+pub(crate) struct Room {
+    now: Model,
+    next: Model,
+    trial: Vec<f64>,
+    step: Vec<f64>,
+    pivot: Vec<f64>,
+}
+
+/// How Newton's method went.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Steps {
+    pub(crate) solves: usize,
+    pub(crate) converged: bool,
+}
+
+impl Stretch<'_> {
+    fn nodes(&self) -> usize {
+        self.h.len() + 1
+    }
+
+    fn is_held(&self, i: usize) -> bool {
+        (i == 0 && self.held[0]) || (i == self.h.len() && self.held[1])
+    }
+
+    /// The least slope of interval i.
+    #[inline(always)]
+    fn floor(&self, i: usize) -> f64 {
+        if self.floor.is_empty() { 0.0 } else { self.floor[i] }
+    }
+
+    /// The least slope at node i: the larger of its two intervals'.
+    #[inline(always)]
+    fn bound(&self, i: usize) -> f64 {
+        if self.floor.is_empty() {
+            return 0.0;
+        }
+        let before = if i > 0 { self.floor[i - 1] } else { 0.0 };
+        let after = if i < self.h.len() { self.floor[i] } else { 0.0 };
+        before.max(after)
+    }
+
+    /// The smaller secant beside node i: the unit of its slope.
+    #[inline(always)]
+    fn unit(&self, i: usize) -> f64 {
+        let before = if i > 0 { self.d[i - 1] / self.h[i - 1] } else { f64::INFINITY };
+        let after = if i < self.h.len() { self.d[i] / self.h[i] } else { f64::INFINITY };
+        before.min(after)
+    }
+
+    /// Interval i with end slopes m.
+    #[inline(always)]
+    fn piece(&self, i: usize, m: [f64; 2]) -> Piece {
+        if i == 0
+            && let Some(layer) = self.layer[0]
+        {
+            return layer.piece(false, m, self.d[i], self.h[i]);
+        }
+        if i + 1 == self.h.len()
+            && let Some(layer) = self.layer[1]
+        {
+            return layer.piece(true, m, self.d[i], self.h[i]);
+        }
+        let c = self.floor(i);
+        let m = m.map(|m| (m - c).max(0.0));
+        Piece::new(m, m.map(f64::sqrt), self.d[i] - c * self.h[i], self.h[i])
+    }
+
+    /// Slopes of least energy. `m` holds those of held ends, and with `warm` a start for the others.
+    pub(crate) fn minimise(&self, m: &mut [f64], warm: bool, room: &mut Room) -> Steps {
+        if !warm {
+            self.start(m);
+            for parity in (0..2 * SWEEPS).map(|k| (k + 1) % 2) {
+                for i in (parity..m.len()).step_by(2).filter(|&i| !self.is_held(i)) {
+                    m[i] = self.relaxed(m, i);
+                }
+            }
+        }
+        let steps = self.newton(m, room);
+        for i in 0..m.len() {
+            if !self.is_held(i) && m[i] < NOTHING * self.unit(i) && self.bound(i) == 0.0 {
+                m[i] = 0.0;
+            }
+        }
+        steps
+    }
+
+    /// Harmonic means of the secants, with which every interval is one cubic; the secant at free ends.
+    fn start(&self, m: &mut [f64]) {
+        let n = self.h.len();
+        let secant = |i: usize| self.d[i] / self.h[i];
+        for i in (0..=n).filter(|&i| !self.is_held(i)) {
+            let mean = if i == 0 || i == n {
+                secant(i.min(n - 1))
+            } else {
+                let (a, b) = (secant(i - 1), secant(i));
+                2.0 * b * (a / (a + b))
+            };
+            m[i] = mean.max(self.bound(i));
+        }
+    }
+
+    /// The slope of node i that is best for those of its neighbours, nearly: the scalar convex problem, in a bracket.
+    fn relaxed(&self, m: &[f64], i: usize) -> f64 {
+        let bound = self.bound(i);
+        let (mut low, mut high) = (bound, f64::INFINITY);
+        let mut t = m[i];
+        for _ in 0..SWEEP_STEPS {
+            let (mut gradient, mut second) = (0.0, 0.0);
+            if i > 0 {
+                let p = self.piece(i - 1, [m[i - 1], t]);
+                (gradient, second) = (p.gradient[1], p.hessian[2]);
+            }
+            if i < self.h.len() {
+                let p = self.piece(i, [t, m[i + 1]]);
+                (gradient, second) = (gradient + p.gradient[0], second + p.hessian[0]);
+            }
+            let next = if gradient < 0.0 {
+                low = t;
+                t - gradient / second
+            } else if gradient > 0.0 {
+                high = t;
+                // In the square: the gradient of an interval with a level part is quadratic in the slope.
+                let size = t - bound;
+                let square = size * size - 2.0 * size * gradient / second;
+                bound + if square > 0.0 { square.sqrt() } else { 0.25 * size }
+            } else {
+                return t;
+            };
+            let outside = !(next > low && next < high);
+            let moved = if outside && high.is_finite() {
+                let (a, b) = (low - bound, high - bound);
+                bound + (a.max(1e-4 * b) * b).sqrt()
+            } else {
+                next
+            };
+            let small = (moved - t).abs() <= SWEEP_ENOUGH * moved;
+            t = moved;
+            if small {
+                break;
+            }
+        }
+        t
+    }
+
+    fn newton(&self, m: &mut [f64], room: &mut Room) -> Steps {
+        if self.nodes() == 2 && self.held == [true, true] {
+            return Steps { solves: 0, converged: true };
+        }
+        let Room { now, next, trial, step, pivot } = room;
+        self.evaluate(m, now);
+        for solves in 1..=STEPS {
+            self.solve(m, now, step, pivot);
+            let mut t = 1.0;
+            loop {
+                self.moved(m, now, step, t, trial);
+                self.evaluate(trial, next);
+                let (mut rise, mut energy, mut slope) = (0.0, 0.0, 0.0);
+                for (a, b) in now.energy.iter().zip(&next.energy) {
+                    rise += b - a;
+                    energy += a.abs();
+                }
+                for i in 0..m.len() {
+                    slope += now.gradient[i] * (trial[i] - m[i]);
+                }
+                // Negated: an energy that is not a number is no descent.
+                if rise <= 1e-4 * slope.min(0.0) + ALLOWANCE * energy || t < 1e-9 {
+                    break;
+                }
+                t *= 0.5;
+            }
+            let mut largest = 0.0f64;
+            for i in (0..m.len()).filter(|&i| !self.is_held(i)) {
+                let size = m[i].max(trial[i]).max(self.unit(i));
+                largest = largest.max((trial[i] - m[i]).abs() / size);
+            }
+            m.copy_from_slice(trial);
+            std::mem::swap(now, next);
+            if largest <= ENOUGH * t {
+                return Steps { solves, converged: true };
+            }
+        }
+        Steps { solves: STEPS, converged: false }
+    }
+
+    /// Energies of the intervals, gradient and Hessian of their sum.
+    fn evaluate(&self, m: &[f64], model: &mut Model) {
+        let n = self.nodes();
+        for values in [&mut model.gradient, &mut model.diagonal, &mut model.singular] {
+            values.clear();
+            values.resize(n, 0.0);
+        }
+        model.energy.clear();
+        model.off_diagonal.clear();
+        for i in 0..n - 1 {
+            let p = self.piece(i, [m[i], m[i + 1]]);
+            model.energy.push(p.energy);
+            model.off_diagonal.push(p.hessian[1]);
+            for k in 0..2 {
+                model.gradient[i + k] += p.gradient[k];
+                model.diagonal[i + k] += p.hessian[2 * k];
+                model.singular[i + k] += p.singular[k];
+            }
+        }
+        // Held slopes, and those that the data's direction presses against their bound, stay where they are.
+        for i in 0..n {
+            let bound = self.bound(i);
+            let pressed = bound > 0.0 && m[i] <= bound && model.gradient[i] > 0.0;
+            if self.is_held(i) || pressed {
+                (model.gradient[i], model.diagonal[i], model.singular[i]) = (0.0, 1.0, 0.0);
+                if i > 0 {
+                    model.off_diagonal[i - 1] = 0.0;
+                }
+                if i + 1 < n {
+                    model.off_diagonal[i] = 0.0;
+                }
+            }
+        }
+    }
+
+    /// Newton's step: elimination without exchanges, for the system is positive definite and well conditioned when
+    /// scaled, which changes nothing in it but ranges.
+    fn solve(&self, m: &[f64], model: &Model, step: &mut Vec<f64>, pivot: &mut Vec<f64>) {
+        let n = m.len();
+        step.clear();
+        pivot.clear();
+        for i in 0..n {
+            let (mut diagonal, mut right) = (model.diagonal[i], -model.gradient[i]);
+            if i > 0 {
+                let factor = model.off_diagonal[i - 1] / pivot[i - 1];
+                diagonal -= factor * model.off_diagonal[i - 1];
+                right -= factor * step[i - 1];
+            }
+            pivot.push(diagonal);
+            step.push(right);
+        }
+        for i in (0..n).rev() {
+            let after = if i + 1 < n { model.off_diagonal[i] * step[i + 1] } else { 0.0 };
+            step[i] = (step[i] - after) / pivot[i];
+        }
+    }
+
+    /// The slopes after a part t of the step.
+    fn moved(&self, m: &[f64], model: &Model, step: &[f64], t: f64, out: &mut Vec<f64>) {
+        out.clear();
+        for i in 0..m.len() {
+            let (bound, by) = (self.bound(i), t * step[i]);
+            out.push(if self.is_held(i) || step[i] == 0.0 {
+                m[i]
+            } else if model.singular[i] > 0.5 * model.diagonal[i] {
+                // A term in slope^(3/2) rules: the step is taken in the root of the slope.
+                let root = (m[i] - bound).max(0.0).sqrt().max(TINY_ROOT);
+                let moved = (root + by / (2.0 * root)).max(0.0);
+                bound + moved * moved
+            } else {
+                bound + (m[i] - bound + by).max((m[i] - bound) / 16.0)
+            });
+        }
+    }
+}
