@@ -26,7 +26,11 @@ export PIP_DISABLE_PIP_VERSION_CHECK := 1
 # in shapespline-geometry: seconds, against nearly two minutes. The extension's own crate holds no mathematics and
 # cannot be linked outside Python: pytest is its test.
 CARGO_TEST := cargo test --workspace --exclude shapespline-python
-# Arguments for pytest, for example: make test PYTEST="-k published -x"
+# As many processes as there are cores (pytest-xdist). Work is stolen in runs of neighbours, so that what a module
+# computes once is mostly computed in one process; it may be in two, hence no test depends on the others or on their
+# order, and none measures another's load (tests/threads.py). Plain `pytest` runs the same tests in one process.
+PYTEST_ALL := $(BIN)/python -m pytest --numprocesses logical --dist worksteal
+# Arguments for pytest, for example: make test PYTEST="-k published -x", or in one process: make test PYTEST="-n 0"
 PYTEST ?=
 # Arguments for the benchmark, for example: make bench BENCH=--quick
 BENCH ?=
@@ -50,7 +54,7 @@ test-rust: cargo
 	$(CARGO_TEST)
 
 test-python: extension
-	$(BIN)/python -m pytest $(PYTEST)
+	$(PYTEST_ALL) $(PYTEST)
 
 check: lint-rust lint-python test docs
 

@@ -65,7 +65,7 @@ def row(case: cases.Case, plain: ss.NuSpline, family: type[ss.SpaceCurve]) -> li
     after = case.preserve()
     chord = np.linalg.norm(np.diff(case.points, axis=0), axis=1).mean()
     own, u = pieces(after), after.knots
-    segment = np.searchsorted(case.fit().parameters[1:-1], u[:-1], side="right")
+    segment = np.searchsorted(after.parameters[1:-1], u[:-1], side="right")
     polygon = max(
         from_broken_line(p, case.points[i : i + 2]) for p, i in zip(own, segment, strict=True)
     )

@@ -13,26 +13,11 @@ hypothesis.settings.register_profile("ci", derandomize=True, deadline=None, max_
 hypothesis.settings.register_profile("dev", deadline=None)
 hypothesis.settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "dev"))
 
-_tables: list[str] = []
-
 
 @pytest.fixture
 def rng() -> np.random.Generator:
     """Return a generator with a fixed seed."""
     return np.random.default_rng(20001013)
-
-
-@pytest.fixture
-def show_table():
-    """Return a function that keeps a table to be printed after the run, failed or not."""
-    return _tables.append
-
-
-def pytest_terminal_summary(terminalreporter) -> None:
-    """Print the tables that tests kept: measured numbers that a reader wants to see."""
-    for table in _tables:
-        terminalreporter.write_line("")
-        terminalreporter.write_line(table)
 
 
 @pytest.fixture(autouse=True, scope="session")

@@ -6,6 +6,9 @@ import os
 LONG = os.environ.get("SHAPESPLINE_TESTS") == "long"
 
 
-def scaled(n: int) -> int:
-    """Return how many of ``n`` generated cases to run: all in `make test-long`, else a tenth."""
-    return n if LONG else max(1, n // 10)
+def scaled(n: int, part: int = 10) -> int:
+    """Return how many of ``n`` generated cases to run: all in `make test-long`, else a tenth.
+
+    Of those that take long, fair curves mostly, it may be another part.
+    """
+    return n if LONG else max(1, n // part)

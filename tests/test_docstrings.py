@@ -12,8 +12,11 @@ FLAGS = doctest.NORMALIZE_WHITESPACE | doctest.ELLIPSIS
 
 
 def members(cls):
-    """Yield a class's own public methods and attributes: written in Python or in Rust alike."""
-    for name, value in vars(cls).items():
+    """Yield a class's own public methods and attributes: written in Python or in Rust alike.
+
+    By name: what is written in Rust stands in another order in every process.
+    """
+    for name, value in sorted(vars(cls).items()):
         is_public = not name.startswith("_") or name == "__call__"
         is_method = inspect.isroutine(value) or isinstance(value, (classmethod, staticmethod))
         if is_public and (is_method or inspect.isdatadescriptor(value)):

@@ -53,7 +53,7 @@ def uneven(rng, count, dim, decades=6.0):
 
 def how_many(family):
     # Nearly every segment of a fair curve is searched for here.
-    return scaled(150 if family is ss.FairSpline else 3000)
+    return scaled(150, 25) if family is ss.FairSpline else scaled(3000)
 
 
 def fits(family, dim, rng):

@@ -46,7 +46,7 @@ def keeps(curve, wanted):
 @every_dimension
 @every_energy
 def test_its_own_directions_give_the_curve_back(dim, energy, rng):
-    for curve, points, options, chosen in free_curves(rng, dim, energy, scaled(200)):
+    for curve, points, options, chosen in free_curves(rng, dim, energy, scaled(200, 25)):
         wanted = {k: curve.tangents[k] * 10 ** rng.uniform(-3, 3) for k in chosen}
         again = ss.FairSpline(points, tangents=wanted, **options)
         assert again.check().ok
@@ -61,7 +61,7 @@ def test_its_own_directions_give_the_curve_back(dim, energy, rng):
 @every_energy
 def test_directions_near_its_own_are_nearly_always_had(dim, energy, rng):
     found = turned = 0
-    for curve, points, options, chosen in free_curves(rng, dim, energy, scaled(200)):
+    for curve, points, options, chosen in free_curves(rng, dim, energy, scaled(200, 25)):
         wanted = {k: unit(curve.tangents[k]) + 1e-3 * rng.normal(size=dim) for k in chosen}
         try:
             near = ss.FairSpline(points, tangents=wanted, **options)
@@ -72,7 +72,7 @@ def test_directions_near_its_own_are_nearly_always_had(dim, energy, rng):
         assert keeps(near, wanted)
         assert max(near.diagnostics.turned.values(), default=0.0) < 0.02
         found, turned = found + 1, turned + bool(near.diagnostics.turned)
-    assert found > scaled(200) / 2
+    assert found > scaled(200, 25) / 2
     assert turned <= found / 3
 
 

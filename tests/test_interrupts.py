@@ -1,16 +1,11 @@
 """Ctrl-C is heard within a second by whatever can run longer; see also test_processes.py."""
 
-import contextlib
-import os
-import signal
-import threading
-import time
-
 import numpy as np
 import pytest
 from scipy.interpolate import make_interp_spline
 
 import shapespline as ss
+import threads
 
 
 def helix(n):
@@ -82,22 +77,4 @@ CALLS = [evaluation, torsion, samples, lengths, inverse, check, margin, notes, f
 
 @pytest.mark.parametrize("call", CALLS, ids=lambda call: call.__name__)
 def test_ctrl_c_is_heard(call):
-    run = call()
-    pressed = []
-
-    def press():
-        pressed.append(time.perf_counter())
-        os.kill(os.getpid(), signal.SIGINT)
-
-    timer = threading.Timer(0.3, press)
-    timer.start()
-    try:
-        with contextlib.suppress(KeyboardInterrupt):
-            run()
-            # On a very fast machine the call is over before the signal comes.
-            time.sleep(5)
-        heard = time.perf_counter()
-    finally:
-        timer.cancel()
-    # A second on a quiet machine; a busy one may give the process no time for a while.
-    assert heard - pressed[0] < 3.0
+    threads.assert_ctrl_c_ends(call())

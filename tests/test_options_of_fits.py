@@ -9,6 +9,7 @@ import pytest
 import cases
 import polygons
 import shapespline as ss
+from scale import scaled
 from shapespline import _files, cli
 
 every_family = pytest.mark.parametrize("family", cases.FAMILIES, ids=lambda c: c.__name__)
@@ -50,7 +51,7 @@ def is_kept(curve, options):
 def test_a_check_asks_what_the_fit_was_asked(family, options, rng, tmp_path):
     differ = 0
     for dim in (2, 3):
-        for _ in range(6):
+        for _ in range(6 if family in cases.TENSE else scaled(6)):
             points = points_of(rng, dim)
             curve = cases.preserving(family)(points, **options)
             is_kept(curve, options)
@@ -78,7 +79,7 @@ def test_a_check_asks_what_the_fit_was_asked(family, options, rng, tmp_path):
 
 @every_family
 def test_many_curves_keep_the_options_of_their_fit(family, rng):
-    rows = [points_of(rng) for _ in range(8)]
+    rows = [points_of(rng) for _ in range(8 if family in cases.TENSE else 3)]
     options = {"criteria": ["convexity", "inflection", "turning"], "tolerance": 0.05}
     offsets = np.cumsum([0, *map(len, rows)])
     for curve in ss.fit_many(

@@ -64,7 +64,7 @@ def runs(rng, dim):
 @pytest.mark.parametrize("parameters", ["uniform", "chordal", "centripetal"])
 @every_family
 def test_no_curve_turns_the_wrong_way(family, parameters, rng):
-    for number in range(scaled(600)):
+    for number in range(scaled(600, 10 if family in cases.TENSE else 30)):
         points = runs(rng, 2 + number % 2)
         boundary = ["natural", "circular", "periodic", None][number // 2 % 4]
         if boundary == "periodic":
