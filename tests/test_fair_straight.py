@@ -85,7 +85,9 @@ def test_runs_are_straight_and_the_rest_keeps_its_shape(dim, energy, ends, rng):
             )
             side = turning(points[k : k + 1] - points[k - 1], points[k + 1 : k + 2] - points[k])
             assert np.all(turning(curve(own, 1), curve(own, 2)) @ side[0] > 0)
-            assert curve.curvature(u[k]) <= 1e-9 * curve.curvature(own).max()
+            # None at the point, but for what rounding leaves of second differences of positions.
+            rounding = 1e-12 / size
+            assert curve.curvature(u[k]) <= 1e-9 * curve.curvature(own).max() + rounding
 
 
 @every_dimension
