@@ -11,6 +11,7 @@ from batches import BATCHES, BLOCKS, assert_long_batches_agree, assert_same_batc
 
 #: every function of one variable, of data with a rise, a flat and a fall
 FUNCTIONS = {
+    "cubic": ss.MonotoneCubic,
     "quintic": ss.MonotoneQuintic,
     "quintic, fritsch-butland": lambda x, y: ss.MonotoneQuintic(x, y, slopes="fritsch-butland"),
     "quartic": ss.MonotoneQuartic,

@@ -11,6 +11,8 @@ from hypothesis import strategies as st
 import shapespline as ss
 
 FAMILIES = [
+    (ss.MonotoneCubic, {}),
+    (ss.MonotoneCubic, {"ends": "natural", "layer": 0.0}),
     (ss.MonotoneQuartic, {}),
     (ss.MonotoneQuintic, {"slopes": "fritsch-butland"}),
     (ss.MonotoneQuintic, {}),

@@ -161,19 +161,19 @@ def test_columns_and_rows(rng):
     for k in range(3):
         one = ss.MonotoneQuintic(x, y[:, k], slopes=d[:, k])
         np.testing.assert_array_equal(f([0.3, 4.4])[:, k], one([0.3, 4.4]))
-    rows = ss.fit_many_monotone([x] * 3, y.T, slopes=d.T)
+    rows = ss.fit_many_monotone([x] * 3, y.T, slopes=d.T, kind="quintic")
     np.testing.assert_array_equal(rows(2.2), f(2.2))
     d[3, 1] = 20
     with pytest.raises(ss.InputError, match=r"slopes\[3, 1\] .* got 20"):
         ss.MonotoneQuintic(x, y, slopes=d)
     with pytest.raises(ss.InputError, match=r"row 1: slopes\[3\] .* got 20"):
-        ss.fit_many_monotone([x] * 3, y.T, slopes=d.T)
+        ss.fit_many_monotone([x] * 3, y.T, slopes=d.T, kind="quintic")
     limited = ss.MonotoneQuintic(x, y, slopes=d, clip=True)
     assert [c.limited for c in limited.diagnostics] == [[], [3], []]
-    rows = ss.fit_many_monotone([x] * 3, y.T, slopes=d.T, clip=True)
+    rows = ss.fit_many_monotone([x] * 3, y.T, slopes=d.T, clip=True, kind="quintic")
     np.testing.assert_array_equal(rows(2.2), limited(2.2))
     with pytest.raises(ss.InputError, match="clip=True is for kind 'quintic'"):
-        ss.fit_many_monotone(x[None], y.T[:1], "quartic", clip=True)
+        ss.fit_many_monotone(x[None], y.T[:1], kind="quartic", clip=True)
 
 
 def test_the_paper_s_program_is_fritsch_butland_alone():

@@ -15,12 +15,18 @@ import shapespline as ss
 from scale import scaled
 
 FAMILIES = [
+    (ss.MonotoneCubic, {}),
+    (ss.MonotoneCubic, {"ends": "natural", "layer": 0.0}),
     (ss.MonotoneQuartic, {}),
     (ss.MonotoneQuintic, {}),
     (ss.MonotoneQuintic, {"slopes": "fritsch-butland"}),
 ]
 #: Families whose slopes are Fritsch and Butland's.
-SLOPES = [FAMILIES[0], (ss.MonotoneQuartic, {"shape": 3.0}), FAMILIES[2]]
+SLOPES = [
+    (ss.MonotoneQuartic, {}),
+    (ss.MonotoneQuartic, {"shape": 3.0}),
+    (ss.MonotoneQuintic, {"slopes": "fritsch-butland"}),
+]
 SHAPES = [(), (0,), (1,), (6, 2, 5), (2, 0, 3)]
 
 
@@ -40,7 +46,10 @@ def test_shapes(rng, family, options, places):
                 assert np.shape(values) == expected
             assert f.y.shape == f.slopes.shape == f.second_derivatives.shape == y.shape
             assert np.shape(f.integrate(0, 3)) == np.shape(f.bending_energy) == rest
-            assert f.alpha.shape == f.beta.shape == (*rest[:at], 4, *rest[at:])
+            if family is ss.MonotoneCubic:
+                assert f.interval_gaps.shape == (*rest[:at], 4, *rest[at:])
+            else:
+                assert f.alpha.shape == f.beta.shape == (*rest[:at], 4, *rest[at:])
             assert f.to_bpoly()(np.ones(places)).shape == expected
             many = f.diagnostics
             assert len(many) == np.prod(rest, dtype=int) if rest else many.converged
@@ -79,7 +88,7 @@ def test_casts(family, options, dtype):
     np.testing.assert_array_equal(family(x, y, **options)(q), expected)
 
 
-@pytest.mark.parametrize(("family", "options"), SLOPES)
+@pytest.mark.parametrize(("family", "options"), [(ss.MonotoneCubic, {}), *SLOPES])
 def test_end_slopes(family, options):
     """SciPy's test_endslopes (gh-3453), where the slope at 0 was 0 for PCHIP's 33,756."""
     x = [0.0, 0.1, 0.25, 0.35]
@@ -87,7 +96,8 @@ def test_end_slopes(family, options):
         f = family(x, y, **options)
         for end in (0, -1):
             assert f(x[end], 1) != 0
-    assert f.slopes[0] == pytest.approx(33756, rel=1e-5)
+    if family is not ss.MonotoneCubic:
+        assert f.slopes[0] == pytest.approx(33756, rel=1e-5)
 
 
 @pytest.mark.parametrize(("family", "options"), SLOPES)
@@ -130,13 +140,13 @@ def test_one_slope_vector_for_all_columns(rng, family, options):
         np.testing.assert_array_equal(one([0.5, 2.2]), each([0.5, 2.2]))
     kind = family.__name__.removeprefix("Monotone").lower()
     y = np.sort(rng.random((3, 4)), 1)
-    rows = ss.fit_many_monotone([x] * 3, y, kind, slopes=d, **clip)
+    rows = ss.fit_many_monotone([x] * 3, y, kind=kind, slopes=d, **clip)
     np.testing.assert_array_equal(rows(0.7), family(x, y, 1, slopes=d, **clip)(0.7))
     wrong = r"slopes must have the shape of y, \(3, 2\), or \(3,\), got shape \(2,\)"
     with pytest.raises(ss.InputError, match=wrong):
         family([0, 1, 2], [[0, 1], [1, 2], [2, 3]], slopes=[1, 2])
     with pytest.raises(ss.InputError, match=r"shape of y, \(3, 4\), or \(4,\), got shape \(4, 3\)"):
-        ss.fit_many_monotone([x] * 3, y, kind, slopes=y.T)
+        ss.fit_many_monotone([x] * 3, y, kind=kind, slopes=y.T)
 
 
 def test_options_of_the_other_kind_are_refused():
@@ -148,14 +158,20 @@ def test_options_of_the_other_kind_are_refused():
         ("quartic", "fairness", "bending"),
         ("quartic", "fairness", "parametric"),
         ("quartic", "slopes", "optimal"),
+        ("cubic", "slopes", "optimal"),
+        ("cubic", "slopes", "fritsch-butland"),
+        ("cubic", "clip", True),
+        ("quintic", "ends", "natural"),
+        ("quartic", "layer", 0.0),
+        ("quintic", "min_slope", 0.5),
     ):
         with pytest.raises(ss.InputError, match=f"{option}.* is for kind") as error:
-            ss.fit_many_monotone(x, x, kind, **{option: value})
+            ss.fit_many_monotone(x, x, kind=kind, **{option: value})
         assert error.value.argument == option
     for kind, options in itertools.product(
-        ("quartic", "quintic"), ({}, {"shape": None, "fairness": None, "slopes": None})
+        ("cubic", "quartic", "quintic"), ({}, {"shape": None, "fairness": None, "slopes": None})
     ):
-        np.testing.assert_array_equal(ss.fit_many_monotone(x, x, kind, **options)(1.5), [1.5])
+        np.testing.assert_array_equal(ss.fit_many_monotone(x, x, kind=kind, **options)(1.5), [1.5])
 
 
 @pytest.mark.parametrize("name", ["shape", "slopes", "x", "y"])

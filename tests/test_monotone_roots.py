@@ -8,6 +8,8 @@ import shapespline as ss
 from scale import scaled
 
 FAMILIES = [
+    (ss.MonotoneCubic, {}),
+    (ss.MonotoneCubic, {"ends": "natural", "layer": 0.0}),
     (ss.MonotoneQuartic, {}),
     (ss.MonotoneQuartic, {"shape": 3.0}),
     (ss.MonotoneQuintic, {}),
@@ -38,7 +40,7 @@ def test_a_line_has_one_root(family, options, mode):
     for roots in (f.roots(), f.roots(mode), f.derivative().antiderivative().solve(1.0)):
         np.testing.assert_array_equal(roots, [0.5])
     many = ss.fit_many_monotone(
-        [[0, 1]] * 3, [[-1, 1]] * 3, "quintic" if f.degree == 5 else "quartic"
+        [[0, 1]] * 3, [[-1, 1]] * 3, kind={3: "cubic", 4: "quartic", 5: "quintic"}[f.degree]
     )
     for roots in many.roots(mode):
         np.testing.assert_array_equal(roots, [0.5])
@@ -133,7 +135,7 @@ def test_rows_have_solve_and_roots(rng):
     x = np.cumsum(rng.uniform(0.5, 2, (50, 7)), 1)
     y = rng.normal(size=(50, 7))
     for kind in ("quartic", "quintic"):
-        f = ss.fit_many_monotone(x, y, kind)
+        f = ss.fit_many_monotone(x, y, kind=kind)
         levels = rng.normal(size=50)
         for mode in (None, *MODES):
             for k, (some, roots) in enumerate(

@@ -11,7 +11,7 @@ def make(family, rng, **options):
     return family(x, np.cumsum(rng.normal(0, 1, 12)), **options)
 
 
-@pytest.fixture(params=[ss.MonotoneQuartic, ss.MonotoneQuintic])
+@pytest.fixture(params=[ss.MonotoneCubic, ss.MonotoneQuartic, ss.MonotoneQuintic])
 def f(request, rng):
     return make(request.param, rng, extrapolate=True)
 

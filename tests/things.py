@@ -38,6 +38,7 @@ def everything() -> list[object]:
         ss.fit_many(POINTS, [0, 2, 5]),
         ss.polygon_shape(POINTS),
         ss.inflection_count([[0, 0], [1, 1], [2, 0], [3, 1]]),
+        ss.MonotoneCubic(x, y),
         ss.MonotoneQuartic(x, y),
         f,
         f.derivative(),

@@ -17,6 +17,7 @@ from shapespline._core import (
     Fairness,
     FairSpline,
     FairStep,
+    MonotoneCubic,
     MonotoneDiagnostics,
     MonotoneQuartic,
     MonotoneQuintic,
@@ -35,13 +36,14 @@ from shapespline._core import (
     __version__,
     bezier_like,
     fit_many_monotone,
+    minimal_bending,
 )
 from shapespline._errors import ConvergenceError, InputError
 from shapespline._many import Fits, fit_many
 from shapespline._polygon import PolygonShape, polygon_shape
 from shapespline._records import NodeRecord, OscillationRecord, UndecidedRecord
 from shapespline._shape import InflectionCount, check_shape, fairness, inflection_count
-from shapespline._verbs import fit
+from shapespline._verbs import fit, fit_monotone
 
 __all__ = [
     "CatmullRom",
@@ -54,6 +56,7 @@ __all__ = [
     "Fits",
     "InflectionCount",
     "InputError",
+    "MonotoneCubic",
     "MonotoneDiagnostics",
     "MonotoneQuartic",
     "MonotoneQuintic",
@@ -80,8 +83,10 @@ __all__ = [
     "fit",
     "fit_many",
     "fit_many_monotone",
+    "fit_monotone",
     "inflection_count",
     "interchange",
+    "minimal_bending",
     "plot",
     "polygon_shape",
 ]

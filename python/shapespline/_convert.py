@@ -73,7 +73,7 @@ def _of_monotone(f: MonotoneSpline) -> PiecewiseBezier:
     if f.y.ndim != 1:
         text = f"the function must have one column to be a curve, got y of {f.y.shape}"
         raise InputError(text, "curve", value=f.y.shape)
-    x, values = f.x, f._bernstein().T
+    x, values = np.asarray(f.knots), f._bernstein().T
     t = np.linspace(0.0, 1.0, values.shape[1])
     across = x[:-1, None] * (1 - t) + x[1:, None] * t
     return PiecewiseBezier(np.stack([across, values], axis=2), x)

@@ -23,6 +23,7 @@ __all__ = [
     "FairSpline",
     "FairStep",
     "Fairness",
+    "MonotoneCubic",
     "MonotoneDiagnostics",
     "MonotoneQuartic",
     "MonotoneQuintic",
@@ -48,6 +49,7 @@ __all__ = [
     "_polygon_shape",
     "bezier_like",
     "fit_many_monotone",
+    "minimal_bending",
 ]
 
 _Floats = NDArray[np.float64]
@@ -565,6 +567,8 @@ class PiecewisePolynomial:
     @property
     def x(self) -> _Floats: ...
     @property
+    def knots(self) -> _Floats | list[_Floats]: ...
+    @property
     def axis(self) -> int: ...
     @property
     def degree(self) -> int: ...
@@ -598,14 +602,33 @@ class MonotoneSpline(PiecewisePolynomial):
     @property
     def second_derivatives(self) -> _Floats: ...
     @property
-    def alpha(self) -> _Floats: ...
-    @property
-    def beta(self) -> _Floats: ...
-    @property
     def bending_energy(self) -> float | _Floats: ...
     @property
     def diagnostics(self) -> MonotoneDiagnostics | list[MonotoneDiagnostics]: ...
     def inverse(self, y: ArrayLike) -> float | _Floats: ...
+
+_Ends = Literal["estimated", "natural", "periodic"] | tuple[float | None, float | None]
+
+@final
+class MonotoneCubic(MonotoneSpline):
+    def __new__(
+        cls,
+        x: ArrayLike,
+        y: ArrayLike,
+        axis: int = 0,
+        *,
+        slopes: ArrayLike | None = None,
+        ends: _Ends = "estimated",
+        layer: float = 0.0625,
+        min_slope: float = 0.0,
+        extrapolate: _Extrapolate = "linear",
+    ) -> MonotoneCubic: ...
+    @property
+    def level_pieces(self) -> NDArray[np.int64] | list[NDArray[np.int64]]: ...
+    @property
+    def lower_bound(self) -> float | _Floats: ...
+    @property
+    def interval_gaps(self) -> _Floats: ...
 
 @final
 class MonotoneQuartic(MonotoneSpline):
@@ -619,6 +642,10 @@ class MonotoneQuartic(MonotoneSpline):
         shape: float | tuple[ArrayLike, ArrayLike] = 1.0,
         extrapolate: _Extrapolate = "linear",
     ) -> MonotoneQuartic: ...
+    @property
+    def alpha(self) -> _Floats: ...
+    @property
+    def beta(self) -> _Floats: ...
 
 @final
 class MonotoneQuintic(MonotoneSpline):
@@ -633,6 +660,10 @@ class MonotoneQuintic(MonotoneSpline):
         clip: bool = False,
         extrapolate: _Extrapolate = "linear",
     ) -> MonotoneQuintic: ...
+    @property
+    def alpha(self) -> _Floats: ...
+    @property
+    def beta(self) -> _Floats: ...
     @property
     def fairness(self) -> Literal["bending", "parametric"]: ...
 
@@ -674,7 +705,9 @@ class MonotoneDiagnostics:
 class PiecewiseRows:
     def __new__(cls) -> Self: ...
     @property
-    def x(self) -> _Floats: ...
+    def x(self) -> _Floats | list[_Floats]: ...
+    @property
+    def knots(self) -> list[_Floats]: ...
     @property
     def extrapolate(self) -> str | bool | tuple[str | bool, str | bool]: ...
     def __call__(
@@ -701,7 +734,7 @@ class PiecewiseRows:
 @final
 class MonotoneRows(PiecewiseRows):
     def __new__(cls) -> Self: ...
-    def __getitem__(self, row: int, /) -> MonotoneQuintic | MonotoneQuartic: ...
+    def __getitem__(self, row: int, /) -> MonotoneCubic | MonotoneQuintic | MonotoneQuartic: ...
     def inverse(self, y: ArrayLike, *, offsets: ArrayLike | None = None) -> _Floats: ...
     @property
     def y(self) -> _Floats: ...
@@ -719,15 +752,19 @@ class MonotoneRows(PiecewiseRows):
 def fit_many_monotone(
     x: ArrayLike,
     y: ArrayLike,
-    kind: Literal["quintic", "quartic"] = "quintic",
     *,
+    kind: Literal["cubic", "quintic", "quartic"] = "cubic",
     offsets: ArrayLike | None = None,
     slopes: Literal["optimal", "fritsch-butland"] | ArrayLike | None = None,
+    ends: _Ends | None = None,
+    layer: float | None = None,
+    min_slope: float | None = None,
     fairness: Literal["bending", "parametric"] | None = None,
     clip: bool = False,
     shape: float | tuple[ArrayLike, ArrayLike] | None = None,
     extrapolate: _Extrapolate = "linear",
 ) -> MonotoneRows: ...
+def minimal_bending(x: ArrayLike, y: ArrayLike) -> float | _Floats: ...
 def bezier_like(
     degree: Literal[3, 4, 5],
     control: ArrayLike,

@@ -18,8 +18,6 @@ from shapespline import _methods
 from shapespline._convert import piecewise
 from shapespline._core import (
     FairSpline,
-    MonotoneQuartic,
-    MonotoneQuintic,
     MonotoneSpline,
     PiecewiseBezier,
     SpaceCurve,
@@ -27,6 +25,7 @@ from shapespline._core import (
 )
 from shapespline._errors import InputError
 from shapespline._io import FileError, shortened, text_of, write
+from shapespline._kinds import KINDS
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -42,8 +41,7 @@ VERSION = 1
 #: Names of the families, as the command line has them.
 METHODS: dict[type, str] = {
     **{method.family: name for name, method in _methods.METHODS.items()},
-    MonotoneQuartic: "quartic",
-    MonotoneQuintic: "quintic",
+    **{kind.family: name for name, kind in KINDS.items()},
 }
 
 

@@ -16,14 +16,13 @@ import numpy as np
 from shapespline import (
     ConvergenceError,
     InputError,
-    MonotoneQuartic,
-    MonotoneQuintic,
     Tangents,
     interchange,
 )
 from shapespline._convert import piecewise
 from shapespline._files import write_curve
 from shapespline._io import STREAM, FileError, UsageError, name_of, refuse_overwriting, write
+from shapespline._kinds import KINDS
 from shapespline._methods import METHODS, Method
 from shapespline._monotone_check import check_monotone
 from shapespline._progress import progress
@@ -43,9 +42,11 @@ __all__ = ["OPTIONS", "located", "run"]
 
 _CHECK = ("criteria", "resolution", "coplanarity", "collinearity", "tolerance")
 _CURVE = ("parameters", "boundary", "closed", "repeated", "start_tangent", "end_tangent")
-_FUNCTIONS: dict[str, tuple[Any, tuple[str, ...]]] = {
-    "quartic": (MonotoneQuartic, ("shape", "tolerance")),
-    "quintic": (MonotoneQuintic, ("slopes", "fairness", "tolerance")),
+#: Of the options of functions those that a command line can say.
+_FUNCTION_FLAGS = {
+    "cubic": ("ends", "layer", "min_slope", "tolerance"),
+    "quintic": ("slopes", "fairness", "tolerance"),
+    "quartic": ("shape", "tolerance"),
 }
 
 
@@ -57,7 +58,7 @@ def _flags(method: Method) -> tuple[str, ...]:
 #: Options of every method, the default method first.
 OPTIONS: dict[str, tuple[str, ...]] = {
     **{name: (*_CURVE, *_flags(method)) for name, method in METHODS.items()},
-    **{name: options for name, (_, options) in _FUNCTIONS.items()},
+    **_FUNCTION_FLAGS,
 }
 #: Names of given tension: with one of them there is no search.
 _GIVEN = ("tension", "tangent_scale")
@@ -136,15 +137,14 @@ def _fit_curve(name: str, data: Points, given: dict[str, Any]) -> _Fit:
 
 
 def _fit_function(name: str, data: Points, given: dict[str, Any]) -> _Fit:
-    family, _ = _FUNCTIONS[name]
     tolerance = given.pop("tolerance", 1e-9)
-    function = family(*data.points.T, **given)
+    function = KINDS[name].fit(*data.points.T, **given)
     report = check_monotone(data.points, piecewise(function), tolerance=tolerance)
     return _Fit(function, report)
 
 
 def _is_function(method: str) -> bool:
-    return method in _FUNCTIONS
+    return method in KINDS
 
 
 def located(data: Points, error: InputError) -> Exception:

@@ -139,8 +139,8 @@ def add_fit_options(parser: argparse.ArgumentParser, methods: Iterable[str]) -> 
         "--method",
         choices=list(methods),
         default="fair",
-        help="curves: fair, nu, tension, catmull-rom; monotone functions y(x): quartic, quintic "
-        "(default: %(default)s)",
+        help="curves: fair, nu, tension, catmull-rom; monotone functions y(x): cubic, quintic, "
+        "quartic (default: %(default)s)",
     )
     out = parser.add_argument_group("what to write")
     out.add_argument(
@@ -243,7 +243,25 @@ def add_fit_options(parser: argparse.ArgumentParser, methods: Iterable[str]) -> 
         help="catmull-rom: tangents of a shape-preserving curve (default: balanced)",
     )
 
-    function = parser.add_argument_group("functions (quartic, quintic)")
+    function = parser.add_argument_group("functions (cubic, quintic, quartic)")
+    function.add_argument(
+        "--ends",
+        choices=["estimated", "natural", "periodic"],
+        help="cubic: slopes at the ends (default: estimated)",
+    )
+    function.add_argument(
+        "--layer",
+        type=real,
+        metavar="X",
+        help="cubic: share of an interval in which y'' goes to its value at turns and flats "
+        "(default: 1/16)",
+    )
+    function.add_argument(
+        "--min-slope",
+        type=real,
+        metavar="X",
+        help="cubic: least slope as a share of the smallest secant nearby (default: 0)",
+    )
     function.add_argument(
         "--slopes", choices=["optimal", "fritsch-butland"], help="quintic (default: optimal)"
     )

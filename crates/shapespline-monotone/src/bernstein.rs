@@ -22,6 +22,32 @@ pub(crate) fn value(b: &[f64], t: f64) -> f64 {
     w[0]
 }
 
+/// Coefficients on a part of [0, 1], whose ends are those of the part to the last bit (de Casteljau, twice).
+pub(crate) fn part(b: &[f64], [from, to]: [f64; 2]) -> Vec<f64> {
+    let n = b.len();
+    let mut left = b.to_vec();
+    if to < 1.0 {
+        let mut w = b.to_vec();
+        for k in 1..n {
+            for j in 0..n - k {
+                w[j] = (1.0 - to) * w[j] + to * w[j + 1];
+            }
+            left[k] = w[0];
+        }
+    }
+    if from > 0.0 && to > 0.0 {
+        let s = from / to;
+        let mut w = left.clone();
+        for k in 1..n {
+            for j in 0..n - k {
+                w[j] = (1.0 - s) * w[j] + s * w[j + 1];
+            }
+            left[n - 1 - k] = w[n - 1 - k];
+        }
+    }
+    left
+}
+
 /// Coefficients of the derivative by t.
 pub(crate) fn derivative(b: &[f64]) -> Vec<f64> {
     let n = b.len().saturating_sub(1);

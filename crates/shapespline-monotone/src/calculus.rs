@@ -134,7 +134,7 @@ impl MonotoneSpline {
         let value = if nu == 1 && matches!(self.kind, Kind::Cubic { .. }) {
             let falling = self.y[i + 1] < self.y[i];
             let size = signless([c[0], c[1], c[2]].map(|c| if falling { -c } else { c }), t);
-            if falling { -size } else { size }
+            if falling { 0.0 - size } else { size }
         } else {
             bernstein::value(&c[..=degree], t)
         };

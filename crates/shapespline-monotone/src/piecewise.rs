@@ -193,6 +193,22 @@ impl PiecewisePolynomial {
         out
     }
 
+    /// The same function as pieces between these knots, its own among them. O(knots).
+    #[must_use]
+    pub fn refined(&self, knots: &[f64]) -> Self {
+        let mut c = Vec::with_capacity(knots.len().saturating_sub(1) * (self.degree + 1));
+        let mut i = 0;
+        for w in knots.windows(2) {
+            while i + 2 < self.x.len() && self.x[i + 1] <= w[0] {
+                i += 1;
+            }
+            let local = |x: f64| ((x - self.x[i]) / self.h(i)).clamp(0.0, 1.0);
+            let ends = [local(w[0]), if w[1] >= self.x[i + 1] { 1.0 } else { local(w[1]) }];
+            c.extend(bernstein::part(self.piece(i), ends));
+        }
+        Self::new(knots.to_vec(), self.degree, c, self.extrapolate)
+    }
+
     /// An antiderivative of order `nu`, zero (with its first nu − 1 derivatives) at the first knot. O(N).
     #[must_use]
     pub fn antiderivative(&self, nu: usize) -> Self {

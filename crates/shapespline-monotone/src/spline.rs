@@ -107,8 +107,12 @@ impl TryFrom<Stored> for MonotoneSpline {
         if n < 2 || s.y.len() != n || s.d.len() != n || extra != n || s.records.len() + 1 != n {
             return Err("stored interpolant is inconsistent".to_owned());
         }
-        let units =
-            Units::of(&s.x, &s.y).map_err(|error| format!("stored interpolant: {error}"))?;
+        // Those of the data: knots between them would change the mean spacing.
+        let (x, y) = s.points.as_ref().map_or((&s.x, &s.y), |points| (&points.x, &points.y));
+        let units = Units::of(x, y).map_err(|error| format!("stored interpolant: {error}"))?;
+        if x.len() < s.x.len() {
+            crate::data::check(&s.x, &s.y).map_err(|error| format!("stored knots: {error}"))?;
+        }
         let Stored { x, y, points, d, kind, records, extrapolate } = s;
         Ok(Self { x, y, points, d, units, kind, records, extrapolate, cached: Cached::default() })
     }

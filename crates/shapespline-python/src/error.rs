@@ -238,6 +238,10 @@ impl From<&MonotoneError> for Refused {
                 Self::new(argument, [index], value)
             }
             MonotoneError::Slope { index, value, .. } => Self::new("slopes", [index], value),
+            MonotoneError::HeldSlope { argument, index, value, .. } => {
+                Self::new(argument, [index], value)
+            }
+            MonotoneError::Share { argument, value, .. } => Self::new(argument, [], value),
             MonotoneError::NotIncreasing { index, value, .. } => Self::new("x", [index], value),
             MonotoneError::TooFew { argument, found, .. }
             | MonotoneError::Length { argument, found, .. } => Self::new(argument, [], found),

@@ -23,7 +23,7 @@ use crate::{
 };
 
 /// Raised whenever the layout changes; bytes of other versions are refused, not guessed at.
-const VERSION: u8 = 11;
+const VERSION: u8 = 12;
 
 /// Length of the checksum, a CRC-32 of everything before it.
 const CHECKSUM: usize = 4;

@@ -26,9 +26,12 @@ def _drawn(f: PiecewisePolynomial, order: int, samples: int) -> tuple[Floats, Fl
     The values have a column for each of the function's: (pieces · (samples + 1), columns).
     """
     t = np.linspace(0, 1, samples)
-    x = f.x[:-1, None] + np.diff(f.x)[:, None] * t
+    knots = f.knots
+    if isinstance(knots, list):
+        knots = np.unique(np.concatenate(knots))
+    x = knots[:-1, None] + np.diff(knots)[:, None] * t
     # A hair inside: at the ends of a piece a derivative that jumps belongs to its neighbour too.
-    x[:, -1] = np.nextafter(f.x[1:], f.x[:-1])
+    x[:, -1] = np.nextafter(knots[1:], knots[:-1])
     values = np.moveaxis(np.asarray(f(x, order)), (f.axis, f.axis + 1), (0, 1))
     values = values.reshape(*x.shape, -1)
     x = np.concatenate([x, np.full((len(x), 1), np.nan)], axis=1)

@@ -174,23 +174,31 @@ pub(super) fn check_floor(
 }
 
 /// The size of the slope at an end of the cubic through its four points (of the parabola through three, the secant of
-/// two), between 0 and three secants: Newton's divided differences.
+/// two), between 0 and three secants: Newton's divided differences. Where the cubic's slope is against the data because
+/// they turn within the four points, only those before the turn count.
 fn estimated(data: &Data, right: bool) -> f64 {
     let n = data.len();
     let at = |k: usize| if right { n - 1 - k } else { k };
     let (h, delta) = (|k: usize| data.h[at(k)], |k: usize| data.delta[at(k)]);
     // Mirrored at the right end: a derivative of odd order in the distance from the end keeps the secants' sign.
-    let mut slope = delta(0);
-    if n >= 2 {
-        let second = (delta(1) - delta(0)) / (h(0) + h(1));
-        slope -= h(0) * second;
-        if n >= 3 {
-            let next = (delta(2) - delta(1)) / (h(1) + h(2));
-            let third = (next - second) / (h(0) + h(1) + h(2));
-            slope += h(0) * ((h(0) + h(1)) * third);
+    let through = |intervals: usize| {
+        let mut slope = delta(0);
+        if intervals >= 2 {
+            let second = (delta(1) - delta(0)) / (h(0) + h(1));
+            slope -= h(0) * second;
+            if intervals >= 3 {
+                let next = (delta(2) - delta(1)) / (h(1) + h(2));
+                let third = (next - second) / (h(0) + h(1) + h(2));
+                slope += h(0) * ((h(0) + h(1)) * third);
+            }
         }
+        slope * delta(0).signum()
+    };
+    let before_turn = (1..n.min(3)).take_while(|&k| delta(k) * delta(0) > 0.0).count() + 1;
+    let mut size = through(n.min(3));
+    if size <= 0.0 && before_turn < n.min(3) {
+        size = through(before_turn);
     }
-    let size = slope * delta(0).signum();
     // NaN (differences out of range) becomes the secant.
     if size.is_nan() { delta(0).abs() } else { size.clamp(0.0, 3.0 * delta(0).abs()) }
 }

@@ -189,6 +189,9 @@ impl Pieces {
         self.slope.push(0.0);
         let mut from = 0;
         for k in 0..interval.knots {
+            if interval.width[k] == 0.0 {
+                continue;
+            }
             let width = units.x().scale(interval.width[k]);
             let from_right = if interval.knots == 1 { interval.right } else { k == 1 };
             let knot = if from_right { x[1] - width } else { x[0] + width };

@@ -7,10 +7,11 @@
 
 use super::layer::Layer;
 use super::piece::Piece;
+use std::ops::Range;
 
 /// Red–black sweeps that give Newton's method its start, and steps of a node in each.
 const SWEEPS: usize = 3;
-const SWEEP_STEPS: usize = 6;
+const SWEEP_STEPS: usize = 3;
 /// Relative steps at which a sweep leaves a node.
 const SWEEP_ENOUGH: f64 = 1.0 / 64.0;
 /// Steps of Newton's method at most; 12 are the most ever seen.
@@ -18,6 +19,8 @@ const STEPS: usize = 100;
 /// Steps of every slope, relative to it or to the smaller secant beside it, at which Newton's method ends. It
 /// converges quadratically: what is left then is rounding.
 const ENOUGH: f64 = 1e-10;
+/// Nodes beside those that still move that are solved for with them: 3⁻²⁴ is 4e−12.
+const BESIDE: usize = 24;
 /// Slopes below this part of the smaller secant beside them are 0.
 const NOTHING: f64 = 7.888_609_052_210_118e-31; // 2⁻¹⁰⁰
 /// What the energy may rise by rounding, relative to it.
@@ -74,12 +77,6 @@ impl Stretch<'_> {
         (i == 0 && self.held[0]) || (i == self.h.len() && self.held[1])
     }
 
-    /// The least slope of interval i.
-    #[inline(always)]
-    fn floor(&self, i: usize) -> f64 {
-        if self.floor.is_empty() { 0.0 } else { self.floor[i] }
-    }
-
     /// The least slope at node i: the larger of its two intervals'.
     #[inline(always)]
     fn bound(&self, i: usize) -> f64 {
@@ -103,18 +100,21 @@ impl Stretch<'_> {
     #[inline(always)]
     fn piece(&self, i: usize, m: [f64; 2]) -> Piece {
         if i == 0
-            && let Some(layer) = self.layer[0]
+            && let Some(layer) = &self.layer[0]
         {
             return layer.piece(false, m, self.d[i], self.h[i]);
         }
         if i + 1 == self.h.len()
-            && let Some(layer) = self.layer[1]
+            && let Some(layer) = &self.layer[1]
         {
             return layer.piece(true, m, self.d[i], self.h[i]);
         }
-        let c = self.floor(i);
-        let m = m.map(|m| (m - c).max(0.0));
-        Piece::new(m, m.map(f64::sqrt), self.d[i] - c * self.h[i], self.h[i])
+        if self.floor.is_empty() {
+            return Piece::new(m, [m[0].sqrt(), m[1].sqrt()], self.d[i], self.h[i]);
+        }
+        let c = self.floor[i];
+        let m = [(m[0] - c).max(0.0), (m[1] - c).max(0.0)];
+        Piece::new(m, [m[0].sqrt(), m[1].sqrt()], self.d[i] - c * self.h[i], self.h[i])
     }
 
     /// Slopes of least energy. `m` holds those of held ends, and with `warm` a start for the others.
@@ -198,9 +198,9 @@ impl Stretch<'_> {
         if self.nodes() == 2 && self.held == [true, true] {
             return Steps { solves: 0, converged: true };
         }
-        let Room { now, next, trial, step, pivot } = room;
-        self.evaluate(m, now);
+        self.evaluate(m, &mut room.now);
         for solves in 1..=STEPS {
+            let Room { now, next, trial, step, pivot } = room;
             self.solve(m, now, step, pivot);
             let mut t = 1.0;
             loop {
@@ -220,18 +220,54 @@ impl Stretch<'_> {
                 }
                 t *= 0.5;
             }
-            let mut largest = 0.0f64;
-            for i in (0..m.len()).filter(|&i| !self.is_held(i)) {
-                let size = m[i].max(trial[i]).max(self.unit(i));
-                largest = largest.max((trial[i] - m[i]).abs() / size);
-            }
+            let open = self.open(m, trial, ENOUGH * t);
             m.copy_from_slice(trial);
             std::mem::swap(now, next);
-            if largest <= ENOUGH * t {
+            if open.is_empty() {
                 return Steps { solves, converged: true };
+            }
+            if 2 * open.iter().map(Range::len).sum::<usize>() < self.nodes() {
+                let mut all = Steps { solves, converged: true };
+                for nodes in open {
+                    let part = self.part(&nodes).newton(&mut m[nodes], room);
+                    all.solves = all.solves.max(solves + part.solves);
+                    all.converged &= part.converged;
+                }
+                return all;
             }
         }
         Steps { solves: STEPS, converged: false }
+    }
+
+    /// Runs of nodes around those that still moved by more than `enough`, with as many beside them as these could move.
+    fn open(&self, m: &[f64], moved: &[f64], enough: f64) -> Vec<Range<usize>> {
+        let mut open: Vec<Range<usize>> = Vec::new();
+        for i in (0..m.len()).filter(|&i| !self.is_held(i)) {
+            let size = m[i].max(moved[i]).max(self.unit(i));
+            if (moved[i] - m[i]).abs() <= enough * size {
+                continue;
+            }
+            let nodes = i.saturating_sub(BESIDE)..(i + BESIDE + 1).min(m.len());
+            match open.last_mut() {
+                Some(last) if last.end >= nodes.start => last.end = nodes.end,
+                _ => open.push(nodes),
+            }
+        }
+        open
+    }
+
+    /// The stretch between two of its nodes, held there.
+    fn part(&self, nodes: &Range<usize>) -> Stretch<'_> {
+        let (start, end) = (nodes.start, nodes.end - 1);
+        let last = self.h.len();
+        let floor = if self.floor.is_empty() { self.floor } else { &self.floor[start..end] };
+        Stretch {
+            h: &self.h[start..end],
+            d: &self.d[start..end],
+            floor,
+            held: [start > 0 || self.held[0], end < last || self.held[1]],
+            layer: [self.layer[0].filter(|_| start == 0), self.layer[1].filter(|_| end == last)],
+        }
     }
 
     /// Energies of the intervals, gradient and Hessian of their sum.

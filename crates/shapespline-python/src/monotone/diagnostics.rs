@@ -1,7 +1,7 @@
 //! How a monotone fit went, for Python.
 
 use pyo3::prelude::*;
-use shapespline::monotone::{MonotoneQuartic, MonotoneQuintic, Solver};
+use shapespline::monotone::{Diagnostics, MonotoneQuartic, Solver};
 
 use crate::pickle::{self, Kind, Reduced};
 
@@ -10,15 +10,17 @@ use crate::pickle::{self, Kind, Reduced};
 /// Attributes
 /// ----------
 /// solver : str
-///     ``"active-set"`` (quintic, slopes of Fritsch and Butland), ``"interior-point"`` (quintic, optimal
+///     ``"newton"`` (cubic), ``"active-set"`` (quintic, slopes of Fritsch and Butland), ``"interior-point"`` (quintic, optimal
 ///     or given slopes) or ``"local"`` (quartic).
 /// iterations : int
 ///     Linear solves.
 /// active : int
-///     Conditions that hold with equality; of the quartic: segments whose α, β were scaled down.
+///     Conditions that hold with equality; of the cubic: intervals with a level part; of the quartic:
+///     segments whose α, β were scaled down.
 /// kkt_residual : float
-///     Largest violation of the optimality conditions, scaled. Of the interior point: a bound of how
-///     far the energy is above the exact optimum, as a part of it (infinite where none was reached).
+///     Largest violation of the optimality conditions, scaled. Of the interior point, and of the cubic
+///     without layers: a bound of how far the energy is above the exact optimum, as a part of it
+///     (infinite where none was reached).
 /// converged : bool
 ///     Whether the method ended by its own criterion.
 /// certified : bool
@@ -37,7 +39,7 @@ use crate::pickle::{self, Kind, Reduced};
 #[pyclass(module = "shapespline", frozen, get_all, eq, weakref)]
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub(crate) struct MonotoneDiagnostics {
-    /// The method: ``"active-set"``, ``"interior-point"`` or ``"local"``.
+    /// The method: ``"newton"``, ``"active-set"``, ``"interior-point"`` or ``"local"``.
     solver: String,
     /// Linear solves of the optimisation.
     iterations: usize,
@@ -56,8 +58,7 @@ pub(crate) struct MonotoneDiagnostics {
 }
 
 impl MonotoneDiagnostics {
-    pub(crate) fn quintic(fit: &MonotoneQuintic) -> Self {
-        let d = fit.diagnostics();
+    pub(crate) fn of(d: &Diagnostics) -> Self {
         let solver = match d.solver {
             Solver::ActiveSet => "active-set",
             Solver::InteriorPoint => "interior-point",

@@ -1,15 +1,26 @@
 //! The same function as SciPy's objects.
 
+use std::borrow::Cow;
+
 use pyo3::{
     prelude::*,
     types::{IntoPyDict, PyDict},
 };
 use shapespline::monotone::Extrapolation;
 
-use super::function::PiecewisePolynomial;
+use super::{fits::Fits, function::PiecewisePolynomial};
 use crate::output::{FloatArray, shaped};
 
 impl PiecewisePolynomial {
+    /// The columns between knots that all have.
+    fn on_common_knots(&self) -> Cow<'_, Fits> {
+        if self.fits.share_knots() {
+            Cow::Borrowed(&self.fits)
+        } else {
+            Cow::Owned(self.fits.refined())
+        }
+    }
+
     fn scipy_options<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let mode = self.fits.column(0).extrapolation();
         if mode == Extrapolation::PERIODIC {
@@ -23,10 +34,11 @@ impl PiecewisePolynomial {
 impl PiecewisePolynomial {
     /// Bernstein coefficients with SciPy's two axes (degree + 1, segments) in place of ours.
     fn _bernstein<'py>(&self, py: Python<'py>) -> PyResult<FloatArray<'py>> {
-        let first = self.fits.column(0);
-        let (order, segments) = (first.degree() + 1, first.x().len() - 1);
-        let mut values = vec![0.0; self.fits.len() * order * segments];
-        for (column, out) in self.fits.columns().zip(values.chunks_exact_mut(order * segments)) {
+        let fits = self.on_common_knots();
+        let first = fits.column(0);
+        let (order, segments) = (first.degree() + 1, first.knots().len() - 1);
+        let mut values = vec![0.0; fits.len() * order * segments];
+        for (column, out) in fits.columns().zip(values.chunks_exact_mut(order * segments)) {
             for (i, piece) in column.coefficients().chunks_exact(order).enumerate() {
                 for (k, c) in piece.iter().enumerate() {
                     out[k * segments + i] = *c;
@@ -59,7 +71,7 @@ impl PiecewisePolynomial {
         let class = py.import("scipy.interpolate")?.getattr("BPoly")?;
         let options = self.scipy_options(py)?;
         options.set_item("axis", self.layout.axis())?;
-        let x = self.fits.column(0).x().to_vec();
+        let x = self.on_common_knots().column(0).knots().to_vec();
         let n = x.len();
         class.call((self._bernstein(py)?, shaped(py, x, &[n])?), Some(&options))
     }

@@ -1,6 +1,6 @@
 //! The constructors of the quartic and the quintic.
 
-use std::sync::Arc;
+use std::{ops::Range, sync::Arc};
 
 use pyo3::{PyClass, PyClassInitializer, prelude::*};
 use shapespline::monotone::{
@@ -11,24 +11,25 @@ use super::{
     fits::{Fits, fit_all},
     function::PiecewisePolynomial,
     layout::Layout,
-    options::{self, SlopesOption, column_error},
+    options::{self, Given, SlopesOption, column_error},
     spline::MonotoneSpline,
 };
 use crate::{
     error::{invalid, must},
     input::{Array, array},
+    output::FloatArray,
     work::GoOn,
 };
 
 /// Data along an axis.
-struct Data<'py> {
+pub(super) struct Data<'py> {
     x: Array<'py>,
     y: Array<'py>,
     layout: Layout,
 }
 
 impl<'py> Data<'py> {
-    fn of(x: &Bound<'py, PyAny>, y: &Bound<'py, PyAny>, axis: isize) -> PyResult<Self> {
+    pub(super) fn of(x: &Bound<'py, PyAny>, y: &Bound<'py, PyAny>, axis: isize) -> PyResult<Self> {
         let (x, y) = (array("x", x)?, array("y", y)?);
         let &[n] = x.shape() else {
             return Err(must("x", &[], "have one axis", x.shape()));
@@ -58,40 +59,83 @@ impl<'py> Data<'py> {
         copy
     }
 
-    /// `fit(x, y, slopes, go_on)` of every column.
-    fn fit<F: Send>(
+    pub(super) fn into_layout(self) -> Layout {
+        self.layout
+    }
+
+    /// Given slopes, column after column.
+    pub(super) fn given(&self, slopes: Option<&Given>) -> PyResult<Option<Vec<f64>>> {
+        let Some(slopes) = slopes else { return Ok(None) };
+        let (n, columns) = (self.x.values().len(), self.layout.columns().max(1));
+        let mut given = slopes.columns(&self.y, [columns, n], |d| self.layout.split(d, n))?;
+        if self.layout.is_empty() {
+            given.resize(n, 0.0);
+        }
+        Ok(Some(given))
+    }
+
+    /// `fit(x, y, own, go_on)` of every column, which has the numbers `own` of all columns.
+    pub(super) fn fit<F: Send>(
         &self,
         py: Python<'_>,
-        slopes: &SlopesOption,
-        fit: impl Fn(&[f64], &[f64], Slopes, GoOn<'_>) -> Result<F, MonotoneError> + Send + Sync,
+        fit: impl Fn(&[f64], &[f64], Range<usize>, GoOn<'_>) -> Result<F, MonotoneError> + Send + Sync,
     ) -> PyResult<Vec<F>> {
         let mut copy = Vec::new();
         let (x, y) = (self.x.values(), self.columns(&mut copy));
         let (n, columns) = (x.len(), self.layout.columns().max(1));
-        let mut given = slopes.given(&self.y, [columns, n], |d| self.layout.split(d, n))?;
-        if let Some(given) = given.as_mut().filter(|_| self.layout.is_empty()) {
-            given.resize(n, 0.0);
-        }
         let one = |k: usize, go_on: GoOn<'_>| {
-            let slopes = match (slopes, &given) {
-                (SlopesOption::Optimal, _) => Slopes::Optimal,
-                (_, Some(d)) => Slopes::Given(d[k * n..(k + 1) * n].to_vec()),
-                _ => Slopes::FritschButland,
-            };
-            fit(x, &y[k * n..(k + 1) * n], slopes, go_on)
+            let own = k * n..(k + 1) * n;
+            fit(x, &y[own.clone()], own, go_on)
         };
         let fits = fit_all(py, y.len(), columns, one)?;
         fits.map_err(|(k, error)| column_error(&error, &self.layout, k))
     }
+
+    /// [`Self::fit`] with what `option` says of slopes.
+    fn fit_slopes<F: Send>(
+        &self,
+        py: Python<'_>,
+        option: &SlopesOption,
+        fit: impl Fn(&[f64], &[f64], Slopes, GoOn<'_>) -> Result<F, MonotoneError> + Send + Sync,
+    ) -> PyResult<Vec<F>> {
+        let given = self.given(option.given())?;
+        self.fit(py, |x, y, own, go_on| {
+            let slopes = match (option, &given) {
+                (SlopesOption::Optimal, _) => Slopes::Optimal,
+                (_, Some(given)) => Slopes::Given(given[own].to_vec()),
+                _ => Slopes::FritschButland,
+            };
+            fit(x, y, slopes, go_on)
+        })
+    }
 }
 
 /// The object's parts.
-fn object<S>(fits: Fits, layout: Layout, class: S) -> PyClassInitializer<S>
+pub(super) fn object<S>(fits: Fits, layout: Layout, class: S) -> PyClassInitializer<S>
 where
     S: PyClass<BaseType = MonotoneSpline>,
 {
     let base = PiecewisePolynomial::of(fits, &Arc::new(layout));
     PyClassInitializer::from(base).add_subclass(MonotoneSpline).add_subclass(class)
+}
+
+/// The paper's α or β: one number per segment.
+fn shape_parameters<'py>(
+    slf: &Bound<'py, PiecewisePolynomial>,
+    beta: bool,
+) -> PyResult<FloatArray<'py>> {
+    let base = slf.get();
+    let values: Vec<f64> = match base.fits.as_ref() {
+        Fits::Quartic(fits) => {
+            fits.iter().flat_map(|f| if beta { f.beta() } else { f.alpha() }).collect()
+        }
+        Fits::Quintic(fits) => {
+            fits.iter().flat_map(|f| if beta { f.beta() } else { f.alpha() }).collect()
+        }
+        Fits::Cubic(_) | Fits::Pieces(_) => Vec::new(),
+    };
+    let n = values.len() / base.fits.len();
+    base.along(slf.py(), values, &[n])
 }
 
 /// C¹ monotone quartic interpolation: local, one pass.
@@ -167,11 +211,23 @@ impl MonotoneQuartic {
         }
         let data = Data::of(x, y, axis)?;
         let extrapolate = extrapolate.unwrap_or_default();
-        let fits = data.fit(x.py(), &slopes, |x, y, slopes, _| {
+        let fits = data.fit_slopes(x.py(), &slopes, |x, y, slopes, _| {
             let options = QuarticOptions { slopes, shape: shape.clone(), extrapolate };
             shapespline::monotone::MonotoneQuartic::new(x, y, &options)
         })?;
         Ok(object(Fits::Quartic(fits), data.layout, Self))
+    }
+
+    /// The paper's shape parameter α of every segment.
+    #[getter]
+    fn alpha<'py>(slf: &Bound<'py, Self>) -> PyResult<FloatArray<'py>> {
+        shape_parameters(slf.as_super().as_super(), false)
+    }
+
+    /// The paper's shape parameter β of every segment.
+    #[getter]
+    fn beta<'py>(slf: &Bound<'py, Self>) -> PyResult<FloatArray<'py>> {
+        shape_parameters(slf.as_super().as_super(), true)
     }
 }
 
@@ -253,11 +309,25 @@ impl MonotoneQuintic {
     ) -> PyResult<PyClassInitializer<Self>> {
         let data = Data::of(x, y, axis)?;
         let extrapolate = extrapolate.unwrap_or_default();
-        let fits = data.fit(x.py(), &slopes, |x, y, slopes, go_on| {
+        let fits = data.fit_slopes(x.py(), &slopes, |x, y, slopes, go_on| {
             let options = QuinticOptions { slopes, fairness, clip, extrapolate };
             shapespline::monotone::MonotoneQuintic::new_with(x, y, &options, go_on)
         })?;
         Ok(object(Fits::Quintic(fits), data.layout, Self))
+    }
+
+    /// The paper's shape parameter α of every segment. With slope 0 at the segment's
+    /// start: ±∞, or 0 where any would do.
+    #[getter]
+    fn alpha<'py>(slf: &Bound<'py, Self>) -> PyResult<FloatArray<'py>> {
+        shape_parameters(slf.as_super().as_super(), false)
+    }
+
+    /// The paper's shape parameter β of every segment. With slope 0 at the segment's
+    /// end: ±∞, or 0 where any would do.
+    #[getter]
+    fn beta<'py>(slf: &Bound<'py, Self>) -> PyResult<FloatArray<'py>> {
+        shape_parameters(slf.as_super().as_super(), true)
     }
 
     /// What was least: ``"bending"`` or ``"parametric"``.

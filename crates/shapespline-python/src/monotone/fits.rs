@@ -1,4 +1,4 @@
-//! One function a column, of any of the three kinds.
+//! One function per column, of any of the kinds.
 
 use std::{convert::Infallible, ops::ControlFlow};
 
@@ -6,8 +6,8 @@ use pyo3::{exceptions::PyKeyboardInterrupt, prelude::*};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use shapespline::monotone::{
-    Extrapolation, Fairness, MonotoneError, MonotoneQuartic, MonotoneQuintic, MonotoneSpline,
-    PiecewisePolynomial,
+    Extrapolation, Fairness, MonotoneCubic, MonotoneError, MonotoneQuartic, MonotoneQuintic,
+    MonotoneSpline, PiecewisePolynomial,
 };
 
 use crate::{
@@ -16,8 +16,9 @@ use crate::{
 };
 
 /// Columns of one kind; at least one.
-#[derive(Debug, Serialize, Deserialize)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub(crate) enum Fits {
+    Cubic(Vec<MonotoneCubic>),
     Quartic(Vec<MonotoneQuartic>),
     Quintic(Vec<MonotoneQuintic>),
     Pieces(Vec<PiecewisePolynomial>),
@@ -41,8 +42,15 @@ macro_rules! both {
 }
 
 impl Column<'_> {
+    /// The abscissae of the data, or of a function without data its knots.
     pub(crate) fn x(&self) -> &[f64] {
         both!(self, f => f.x())
+    }
+    pub(crate) fn knots(&self) -> &[f64] {
+        match self {
+            Self::Spline(f) => f.knots(),
+            Self::Pieces(f) => f.x(),
+        }
     }
     pub(crate) fn degree(&self) -> usize {
         both!(self, f => f.degree())
@@ -54,6 +62,13 @@ impl Column<'_> {
         match self {
             Self::Spline(f) => f.bernstein_coefficients(),
             Self::Pieces(f) => f.coefficients().to_vec(),
+        }
+    }
+    /// The same as pieces between these knots, its own among them.
+    fn refined(&self, knots: &[f64]) -> PiecewisePolynomial {
+        match self {
+            Self::Spline(f) => f.to_piecewise().refined(knots),
+            Self::Pieces(f) => f.refined(knots),
         }
     }
     #[inline]
@@ -132,6 +147,7 @@ pub(crate) fn fit_all<F: Send>(
 impl Fits {
     pub(crate) fn len(&self) -> usize {
         match self {
+            Self::Cubic(fits) => fits.len(),
             Self::Quartic(fits) => fits.len(),
             Self::Quintic(fits) => fits.len(),
             Self::Pieces(fits) => fits.len(),
@@ -141,6 +157,7 @@ impl Fits {
     #[inline]
     pub(crate) fn column(&self, k: usize) -> Column<'_> {
         match self {
+            Self::Cubic(fits) => Column::Spline(fits[k].spline()),
             Self::Quartic(fits) => Column::Spline(fits[k].spline()),
             Self::Quintic(fits) => Column::Spline(fits[k].spline()),
             Self::Pieces(fits) => Column::Pieces(&fits[k]),
@@ -154,6 +171,7 @@ impl Fits {
     /// Column k alone.
     pub(crate) fn only(&self, k: usize) -> Self {
         match self {
+            Self::Cubic(fits) => Self::Cubic(vec![fits[k].clone()]),
             Self::Quartic(fits) => Self::Quartic(vec![fits[k].clone()]),
             Self::Quintic(fits) => Self::Quintic(vec![fits[k].clone()]),
             Self::Pieces(fits) => Self::Pieces(vec![fits[k].clone()]),
@@ -162,7 +180,7 @@ impl Fits {
 
     /// Numbers that describe all columns: the size of work on all of them.
     pub(crate) fn size(&self) -> usize {
-        self.columns().map(|c| c.x().len()).sum()
+        self.columns().map(|c| c.knots().len()).sum()
     }
 
     /// `work` on every column (and its index), in parallel where there is much of it.
@@ -258,10 +276,24 @@ impl Fits {
         Ok(out)
     }
 
-    /// Whether all columns have as many knots, and pieces of one degree.
+    /// Whether all columns have as many points, and pieces of one degree.
     pub(crate) fn agree(&self) -> bool {
         let first = self.column(0);
         self.columns().all(|c| c.x().len() == first.x().len() && c.degree() == first.degree())
+    }
+
+    /// Whether all columns have the same knots.
+    pub(crate) fn share_knots(&self) -> bool {
+        let first = self.column(0);
+        self.columns().all(|c| c.knots() == first.knots())
+    }
+
+    /// The columns as pieces between the knots of all of them.
+    pub(crate) fn refined(&self) -> Self {
+        let mut knots: Vec<f64> = self.columns().flat_map(|c| c.knots().to_vec()).collect();
+        knots.sort_by(f64::total_cmp);
+        knots.dedup();
+        Self::Pieces(self.columns().map(|c| c.refined(&knots)).collect())
     }
 
     /// What quintics minimise.

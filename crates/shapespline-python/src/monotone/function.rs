@@ -6,6 +6,7 @@ use pyo3::{IntoPyObjectExt, PyClassInitializer, exceptions::PyTypeError, prelude
 use shapespline::monotone::Extrapolation;
 
 use super::{
+    cubic::MonotoneCubic,
     families::{MonotoneQuartic, MonotoneQuintic},
     fits::Fits,
     layout::Layout,
@@ -20,8 +21,8 @@ use crate::{
 
 /// A piecewise polynomial in one variable, on increasing knots: the base of the monotone interpolants.
 ///
-/// Not made directly: derivatives and antiderivatives of `MonotoneQuartic` and `MonotoneQuintic` are
-/// of this class. Immutable; compares and hashes by identity; can be pickled, copied and shared
+/// Not made directly: derivatives and antiderivatives of `MonotoneCubic`, `MonotoneQuintic` and
+/// `MonotoneQuartic` are of this class. Immutable; compares and hashes by identity; can be pickled, copied and shared
 /// between threads.
 ///
 /// Examples
@@ -48,6 +49,10 @@ impl PiecewisePolynomial {
         let base = PyClassInitializer::from(self);
         Ok(match *kind {
             Fits::Pieces(_) => Py::new(py, base)?.into_any(),
+            Fits::Cubic(_) => {
+                let spline = base.add_subclass(MonotoneSpline);
+                Py::new(py, spline.add_subclass(MonotoneCubic))?.into_any()
+            }
             Fits::Quartic(_) => {
                 let spline = base.add_subclass(MonotoneSpline);
                 Py::new(py, spline.add_subclass(MonotoneQuartic))?.into_any()
@@ -91,17 +96,33 @@ impl PiecewisePolynomial {
     #[new]
     fn new() -> PyResult<Self> {
         Err(PyTypeError::new_err(
-            "PiecewisePolynomial is the base of the functions: make a MonotoneQuintic or a \
-             MonotoneQuartic, or take a derivative of one",
+            "PiecewisePolynomial is the base of the functions: make a MonotoneCubic, a MonotoneQuintic or \
+             a MonotoneQuartic, or take a derivative of one",
         ))
     }
 
-    /// Knots, shape (n,); a fresh array.
+    /// Of an interpolant the abscissae of its data, shape (n,); of a derivative or an antiderivative its
+    /// knots. A fresh array.
     #[getter]
-    fn x<'py>(&self, py: Python<'py>) -> PyResult<FloatArray<'py>> {
+    fn x<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        if let Fits::Pieces(_) = *self.fits {
+            return self.knots(py);
+        }
         let x = self.fits.column(0).x().to_vec();
         let n = x.len();
-        shaped(py, x, &[n])
+        Ok(shaped(py, x, &[n])?.into_any())
+    }
+
+    /// Knots between which it is a polynomial, shape (m,); a fresh array. Cubics have knots between their
+    /// data: where those of several columns differ, a list of one array per column.
+    #[getter]
+    fn knots<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let of = |knots: &[f64]| shaped(py, knots.to_vec(), &[knots.len()]);
+        if self.fits.share_knots() {
+            return Ok(of(self.fits.column(0).knots())?.into_any());
+        }
+        let all = self.fits.columns().map(|c| of(c.knots())).collect::<PyResult<Vec<_>>>()?;
+        all.into_bound_py_any(py)
     }
 
     /// The axis of y along which it interpolates, from 0 on.
@@ -189,7 +210,7 @@ impl PiecewisePolynomial {
     fn __repr__(slf: &Bound<'_, Self>) -> PyResult<String> {
         let this = slf.get();
         let column = this.fits.column(0);
-        let (x, n) = (column.x(), column.x().len());
+        let (x, n) = (column.knots(), column.knots().len());
         let columns = match this.layout.columns() {
             1 => String::new(),
             many => format!(", {many} columns"),

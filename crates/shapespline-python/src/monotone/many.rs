@@ -2,7 +2,8 @@
 
 use pyo3::{exceptions::PyTypeError, prelude::*};
 use shapespline::monotone::{
-    self, Extrapolation, Fairness, MonotoneError, QuarticOptions, QuinticOptions, Shape, Slopes,
+    self, CubicOptions, Ends, Extrapolation, Fairness, MonotoneError, QuarticOptions,
+    QuinticOptions, Shape, Slopes,
 };
 
 use super::{
@@ -49,41 +50,34 @@ fn offsets_of(x: &Array<'_>, y: &Array<'_>, offsets: Option<Offsets>) -> PyResul
 }
 
 /// `kind`.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, PartialEq)]
 pub(crate) enum Kind {
+    Cubic,
     Quartic,
     Quintic,
 }
+
+const KINDS: [(&str, Kind); 3] =
+    [("cubic", Kind::Cubic), ("quintic", Kind::Quintic), ("quartic", Kind::Quartic)];
 
 fn family(object: &Bound<'_, PyAny>) -> PyResult<Kind> {
     let name = text(object).ok_or_else(|| {
         PyTypeError::new_err(format!("kind must be a string, got {}", kind(object)))
     })?;
-    choose("kind", &name, &[("quintic", Kind::Quintic), ("quartic", Kind::Quartic)])
+    choose("kind", &name, &KINDS)
 }
 
 impl Kind {
-    /// Options that the kind lacks are refused, not ignored.
-    fn check(
-        self,
-        slopes: Option<&SlopesOption>,
-        fairness: bool,
-        clip: bool,
-        shape: bool,
-    ) -> PyResult<()> {
-        let refuse = |argument: &str, what: &str, own: &str, other: &str| {
-            let text = format!("{what} is for kind '{own}', got it with kind '{other}'");
-            Err(invalid(argument, &[], Value::Nothing, text))
-        };
-        match self {
-            Self::Quintic if shape => refuse("shape", "shape", "quartic", "quintic"),
-            Self::Quartic if clip => refuse("clip", "clip=True", "quintic", "quartic"),
-            Self::Quartic if fairness => refuse("fairness", "fairness", "quintic", "quartic"),
-            Self::Quartic if matches!(slopes, Some(SlopesOption::Optimal)) => {
-                refuse("slopes", "slopes='optimal'", "quintic", "quartic")
-            }
-            _ => Ok(()),
+    /// Refuse an option that the kind lacks, instead of ignoring it, where it is `given`.
+    fn allows(self, argument: &str, what: &str, given: bool, kinds: &[Self]) -> PyResult<()> {
+        if !given || kinds.contains(&self) {
+            return Ok(());
         }
+        let name = |kind: Self| KINDS.iter().find(|(_, k)| *k == kind).map_or("", |(name, _)| name);
+        let own: Vec<String> = kinds.iter().map(|k| format!("'{}'", name(*k))).collect();
+        let (own, other) = (own.join(" and "), name(self));
+        let text = format!("{what} is for kind {own}, got it with kind '{other}'");
+        Err(invalid(argument, &[], Value::Nothing, text))
     }
 }
 
@@ -107,19 +101,33 @@ fn shape(object: &Bound<'_, PyAny>) -> PyResult<Option<Shape>> {
     optional(object, options::shape)
 }
 
+fn ends(object: &Bound<'_, PyAny>) -> PyResult<Option<Ends>> {
+    optional(object, options::ends)
+}
+
+fn layer(object: &Bound<'_, PyAny>) -> PyResult<Option<f64>> {
+    optional(object, options::layer)
+}
+
+fn min_slope(object: &Bound<'_, PyAny>) -> PyResult<Option<f64>> {
+    optional(object, options::min_slope)
+}
+
 /// Fit monotone interpolants to many rows, each with its own x, in parallel.
 ///
 /// Parameters
 /// ----------
 /// x, y : array_like, shape (rows, n) or (total,)
 ///     Row by row; or all rows one after another, with ``offsets``.
-/// kind : {"quintic", "quartic"}
-///     `MonotoneQuintic` or `MonotoneQuartic`.
+/// kind : {"cubic", "quintic", "quartic"}
+///     `MonotoneCubic`, `MonotoneQuintic` or `MonotoneQuartic`.
 /// offsets : array_like of int, shape (rows + 1,), optional
 ///     Row k is ``x[offsets[k]:offsets[k + 1]]``, and so for y.
 /// slopes : {"optimal", "fritsch-butland"} or array_like, optional
 ///     As for the kind, with one slope per entry of ``y``; None is its own default. Where x and y have
-///     two axes, slopes of shape (n,) are for every row.
+///     two axes, slopes of shape (n,) are for every row. The cubic takes numbers alone, NaN where free.
+/// ends, layer, min_slope
+///     For the cubic alone, as for `MonotoneCubic`; None is its own default.
 /// fairness : {"bending", "parametric"}, optional
 ///     For the quintic alone; None is "bending".
 /// clip : bool
@@ -127,7 +135,7 @@ fn shape(object: &Bound<'_, PyAny>) -> PyResult<Option<Shape>> {
 /// shape : float or pair of array_like, optional
 ///     For the quartic alone; None is 1.
 /// extrapolate : {"linear", "clip", "periodic", True, False} or pair of them
-///     As for `MonotoneQuintic`.
+///     As for `MonotoneCubic`.
 ///
 /// Returns
 /// -------
@@ -141,7 +149,7 @@ fn shape(object: &Bound<'_, PyAny>) -> PyResult<Option<Shape>> {
 ///
 /// Notes
 /// -----
-/// Paper 003, see `MonotoneQuintic` and `MonotoneQuartic`. Cost O(total), on all threads.
+/// See `MonotoneCubic`, `MonotoneQuintic` and `MonotoneQuartic`. Cost O(total), on all threads.
 ///
 /// Examples
 /// --------
@@ -151,12 +159,14 @@ fn shape(object: &Bound<'_, PyAny>) -> PyResult<Option<Shape>> {
 /// array([1., 2.])
 #[pyfunction]
 #[pyo3(
-    signature = (x, y, kind=Kind::Quintic, *, offsets=None, slopes=None, fairness=None,
-                 clip=false, shape=None, extrapolate=Some(Extrapolation::LINEAR)),
-    text_signature = "(x, y, kind='quintic', *, offsets=None, slopes=None, fairness=None, \
-                      clip=False, shape=None, extrapolate='linear')"
+    signature = (x, y, *, kind=Kind::Cubic, offsets=None, slopes=None, ends=None, layer=None,
+                 min_slope=None, fairness=None, clip=false, shape=None,
+                 extrapolate=Some(Extrapolation::LINEAR)),
+    text_signature = "(x, y, *, kind='cubic', offsets=None, slopes=None, ends=None, layer=None, \
+                      min_slope=None, fairness=None, clip=False, shape=None, \
+                      extrapolate='linear')"
 )]
-// One argument a keyword: this is the signature that users see.
+// One argument per keyword: this is the signature that users see.
 #[allow(clippy::too_many_arguments)]
 pub(crate) fn fit_many_monotone(
     py: Python<'_>,
@@ -165,6 +175,9 @@ pub(crate) fn fit_many_monotone(
     #[pyo3(from_py_with = family)] kind: Kind,
     offsets: Option<Offsets>,
     #[pyo3(from_py_with = slopes)] slopes: Option<SlopesOption>,
+    #[pyo3(from_py_with = ends)] ends: Option<Ends>,
+    #[pyo3(from_py_with = layer)] layer: Option<f64>,
+    #[pyo3(from_py_with = min_slope)] min_slope: Option<f64>,
     #[pyo3(from_py_with = fairness)] fairness: Option<Fairness>,
     clip: bool,
     #[pyo3(from_py_with = shape)] shape: Option<Shape>,
@@ -173,13 +186,24 @@ pub(crate) fn fit_many_monotone(
     let (x, y) = (array("x", x)?, array("y", y)?);
     let ragged = offsets.is_some();
     let bounds = offsets_of(&x, &y, offsets)?;
-    kind.check(slopes.as_ref(), fairness.is_some(), clip, shape.is_some())?;
-    let given = match &slopes {
+    let (cubic, quintic) = (&[Kind::Cubic][..], &[Kind::Quintic][..]);
+    kind.allows("ends", "ends", ends.is_some(), cubic)?;
+    kind.allows("layer", "layer", layer.is_some(), cubic)?;
+    kind.allows("min_slope", "min_slope", min_slope.is_some(), cubic)?;
+    kind.allows("fairness", "fairness", fairness.is_some(), quintic)?;
+    kind.allows("clip", "clip=True", clip, quintic)?;
+    kind.allows("shape", "shape", shape.is_some(), &[Kind::Quartic])?;
+    let optimal = matches!(slopes, Some(SlopesOption::Optimal));
+    kind.allows("slopes", "slopes='optimal'", optimal, quintic)?;
+    let named = matches!(slopes, Some(SlopesOption::FritschButland));
+    let paper = [Kind::Quintic, Kind::Quartic];
+    kind.allows("slopes", "slopes='fritsch-butland'", named, &paper)?;
+    let given = match slopes.as_ref().and_then(SlopesOption::given) {
         // Rows of two axes may have their slopes in common.
         Some(slopes) if !ragged => {
-            slopes.given(&y, [bounds.len() - 1, bounds[1]], <[f64]>::to_vec)?
+            Some(slopes.columns(&y, [bounds.len() - 1, bounds[1]], <[f64]>::to_vec)?)
         }
-        Some(slopes) => slopes.given(&y, [1, y.values().len()], <[f64]>::to_vec)?,
+        Some(slopes) => Some(slopes.columns(&y, [1, y.values().len()], <[f64]>::to_vec)?),
         None => None,
     };
     let (x, y) = (x.values(), y.values());
@@ -190,6 +214,17 @@ pub(crate) fn fit_many_monotone(
     };
     let extrapolate = extrapolate.unwrap_or_default();
     let fits = match kind {
+        Kind::Cubic => Fits::Cubic(fit_rows(py, &bounds, |from, to, go_on| {
+            let default = CubicOptions::default();
+            let options = CubicOptions {
+                ends: ends.clone().unwrap_or(default.ends),
+                slopes: given.as_ref().map(|given| given[from..to].to_vec()),
+                layer: layer.unwrap_or(default.layer),
+                min_slope: min_slope.unwrap_or(default.min_slope),
+                extrapolate,
+            };
+            monotone::MonotoneCubic::new_with(&x[from..to], &y[from..to], &options, go_on)
+        })?),
         Kind::Quintic => Fits::Quintic(fit_rows(py, &bounds, |from, to, go_on| {
             let fairness = fairness.unwrap_or_default();
             let options = QuinticOptions { slopes: of(from, to), fairness, clip, extrapolate };

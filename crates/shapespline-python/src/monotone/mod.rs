@@ -10,6 +10,7 @@ use crate::curve::document_call;
 
 mod bezier_like;
 mod calculus;
+mod cubic;
 mod diagnostics;
 mod export;
 mod families;
@@ -33,11 +34,13 @@ pub(crate) use rows::PiecewiseRows;
 pub(crate) fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<function::PiecewisePolynomial>()?;
     module.add_class::<spline::MonotoneSpline>()?;
+    module.add_class::<cubic::MonotoneCubic>()?;
     module.add_class::<families::MonotoneQuartic>()?;
     module.add_class::<families::MonotoneQuintic>()?;
     module.add_class::<diagnostics::MonotoneDiagnostics>()?;
     module.add_class::<rows::PiecewiseRows>()?;
     module.add_class::<rows::MonotoneRows>()?;
+    module.add_function(wrap_pyfunction!(cubic::minimal_bending, module)?)?;
     module.add_function(wrap_pyfunction!(many::fit_many_monotone, module)?)?;
     module.add_function(wrap_pyfunction!(bezier_like::bezier_like, module)?)?;
     document_call::<function::PiecewisePolynomial>(module.py())?;

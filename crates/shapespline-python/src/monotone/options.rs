@@ -6,7 +6,7 @@ use pyo3::{
     prelude::*,
     types::{PyList, PyTuple},
 };
-use shapespline::monotone::{Continuation, Extrapolation, Fairness, MonotoneError, Shape};
+use shapespline::monotone::{Continuation, Ends, Extrapolation, Fairness, MonotoneError, Shape};
 
 use super::layout::Layout;
 use crate::{
@@ -35,9 +35,13 @@ pub(crate) fn column_error(error: &MonotoneError, layout: &Layout, k: usize) -> 
         MonotoneError::Slope { value, rule, .. } => {
             format!("slopes[{place}] {rule}, got {value}; clip=True limits such slopes")
         }
+        MonotoneError::HeldSlope { argument: "slopes", value, rule, .. } => {
+            format!("slopes[{place}] {rule}, got {value}")
+        }
         MonotoneError::NotIncreasing { .. }
         | MonotoneError::TooFew { .. }
         | MonotoneError::Shape { .. }
+        | MonotoneError::Share { .. }
         | MonotoneError::NotFinite { .. } => error.to_string(),
         _ => format!("y{}: {error}", layout.column(k)),
     };
@@ -118,30 +122,43 @@ pub(crate) fn fairness_name(fairness: Fairness) -> &'static str {
     }
 }
 
-/// `slopes`: a name, or the numbers in the shape of y or of one column.
-pub(crate) enum SlopesOption {
-    FritschButland,
-    Optimal,
-    Given { values: Vec<f64>, shape: Vec<usize> },
+/// Numbers in the shape of y or of one column.
+pub(crate) struct Given {
+    values: Vec<f64>,
+    shape: Vec<usize>,
 }
 
-impl SlopesOption {
+impl Given {
     /// Given slopes, column after column: one vector of `n` slopes is repeated for all `columns`.
-    pub(crate) fn given(
+    pub(crate) fn columns(
         &self,
         y: &Array<'_>,
         [columns, n]: [usize; 2],
         split: impl Fn(&[f64]) -> Vec<f64>,
-    ) -> PyResult<Option<Vec<f64>>> {
-        let Self::Given { values, shape } = self else { return Ok(None) };
+    ) -> PyResult<Vec<f64>> {
+        let Self { values, shape } = self;
         if shape == y.shape() {
-            return Ok(Some(split(values)));
+            return Ok(split(values));
         }
         if *shape == [n] {
-            return Ok(Some(values.repeat(columns)));
+            return Ok(values.repeat(columns));
         }
         let rule = format!("have the shape of y, {}, or {}", y.shape_text(), tuple(&[n]));
         Err(must("slopes", &[], rule, &shape[..]))
+    }
+}
+
+/// `slopes`: a name, or numbers.
+pub(crate) enum SlopesOption {
+    FritschButland,
+    Optimal,
+    Given(Given),
+}
+
+impl SlopesOption {
+    /// The numbers.
+    pub(crate) fn given(&self) -> Option<&Given> {
+        if let Self::Given(given) = self { Some(given) } else { None }
     }
 }
 
@@ -157,8 +174,61 @@ pub(crate) fn slopes(object: &Bound<'_, PyAny>) -> PyResult<SlopesOption> {
             )),
         };
     }
+    numbers_of_y(object).map(SlopesOption::Given)
+}
+
+fn numbers_of_y(object: &Bound<'_, PyAny>) -> PyResult<Given> {
     let given = array("slopes", object)?;
-    Ok(SlopesOption::Given { values: given.values().to_vec(), shape: given.shape().to_vec() })
+    Ok(Given { values: given.values().to_vec(), shape: given.shape().to_vec() })
+}
+
+/// `slopes` of the cubic: numbers, NaN where they are free.
+pub(crate) fn given_slopes(object: &Bound<'_, PyAny>) -> PyResult<Option<Given>> {
+    if object.is_none() {
+        return Ok(None);
+    }
+    if let Some(name) = text(object) {
+        return Err(unknown(
+            "slopes",
+            &name,
+            "None, an array of slopes with NaN where they are free",
+        ));
+    }
+    numbers_of_y(object).map(Some)
+}
+
+/// `ends`: a name, or a pair of slopes, None where they are free.
+pub(crate) fn ends(object: &Bound<'_, PyAny>) -> PyResult<Ends> {
+    const EXPECTED: &str = "'estimated', 'natural', 'periodic', or a pair of slopes (None: free)";
+    if let Some(name) = text(object) {
+        return match name.as_str() {
+            "estimated" => Ok(Ends::Estimated),
+            "natural" => Ok(Ends::Natural),
+            "periodic" => Ok(Ends::Periodic),
+            _ => Err(unknown("ends", &name, EXPECTED)),
+        };
+    }
+    let length = object.len().map_err(|error| {
+        reworded(object.py(), error, |_| {
+            PyTypeError::new_err(format!("ends must be {EXPECTED}, got {}", kind(object)))
+        })
+    })?;
+    if length != 2 {
+        let text = format!("ends must be {EXPECTED}, got {length} entries");
+        return Err(invalid("ends", &[], length, text));
+    }
+    let side = |k: usize| {
+        let item = object.get_item(k)?;
+        if item.is_none() { Ok(None) } else { finite(["ends[0]", "ends[1]"][k], &item).map(Some) }
+    };
+    Ok(Ends::Slopes([side(0)?, side(1)?]))
+}
+
+pub(crate) fn layer(object: &Bound<'_, PyAny>) -> PyResult<f64> {
+    finite("layer", object)
+}
+pub(crate) fn min_slope(object: &Bound<'_, PyAny>) -> PyResult<f64> {
+    finite("min_slope", object)
 }
 
 /// `shape`: α = β, or the two arrays.

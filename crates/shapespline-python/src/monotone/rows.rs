@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use pyo3::{
-    PyClassInitializer,
+    IntoPyObjectExt, PyClassInitializer,
     exceptions::{PyIndexError, PyTypeError},
     prelude::*,
 };
@@ -107,11 +107,22 @@ impl PiecewiseRows {
         ))
     }
 
-    /// Knots of all rows, in the arrangement of the data: of shape (rows, n), or with offsets one row after
-    /// another; a fresh array.
+    /// Abscissae of the data of all rows, in their arrangement: of shape (rows, n), or with offsets one row
+    /// after another; of derivatives and antiderivatives knots, as a list of arrays where the rows have
+    /// knots between their data. Fresh arrays.
     #[getter]
-    fn x<'py>(&self, py: Python<'py>) -> PyResult<FloatArray<'py>> {
-        self.nodal(py, |f| f.x().to_vec())
+    fn x<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        if !self.ragged && !self.fits.agree() {
+            return self.knots(py)?.into_bound_py_any(py);
+        }
+        Ok(self.nodal(py, |f| f.x().to_vec())?.into_any())
+    }
+
+    /// Knots between which the rows are polynomials: a list of one fresh array per row.
+    #[getter]
+    fn knots<'py>(&self, py: Python<'py>) -> PyResult<Vec<FloatArray<'py>>> {
+        let of = |c: Column<'_>| shaped(py, c.knots().to_vec(), &[c.knots().len()]);
+        self.fits.columns().map(of).collect()
     }
 
     /// What all rows are outside their knots, as `PiecewisePolynomial.extrapolate`.

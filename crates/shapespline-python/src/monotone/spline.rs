@@ -15,7 +15,7 @@ use crate::{
     work::in_parts,
 };
 
-/// A monotone interpolant: the base of `MonotoneQuartic` and `MonotoneQuintic`.
+/// A monotone interpolant: the base of `MonotoneCubic`, `MonotoneQuintic` and `MonotoneQuartic`.
 ///
 /// Not made directly. Every segment is monotone: increasing where its data increase, decreasing where
 /// they decrease, constant where they are.
@@ -43,22 +43,6 @@ impl MonotoneSpline {
         let n = values.len() / base.fits.len();
         base.along(slf.py(), values, &[n])
     }
-
-    /// One number a segment.
-    fn shape_parameter<'py>(slf: &Bound<'py, Self>, beta: bool) -> PyResult<FloatArray<'py>> {
-        let base = slf.as_super().get();
-        let values: Vec<f64> = match base.fits.as_ref() {
-            Fits::Quartic(fits) => {
-                fits.iter().flat_map(|f| if beta { f.beta() } else { f.alpha() }).collect()
-            }
-            Fits::Quintic(fits) => {
-                fits.iter().flat_map(|f| if beta { f.beta() } else { f.alpha() }).collect()
-            }
-            Fits::Pieces(_) => Vec::new(),
-        };
-        let n = values.len() / base.fits.len();
-        base.along(slf.py(), values, &[n])
-    }
 }
 
 #[pymethods]
@@ -66,8 +50,8 @@ impl MonotoneSpline {
     #[new]
     fn new() -> PyResult<PyClassInitializer<Self>> {
         Err(PyTypeError::new_err(
-            "MonotoneSpline is the base of the interpolants: make a MonotoneQuintic or a \
-             MonotoneQuartic",
+            "MonotoneSpline is the base of the interpolants: make a MonotoneCubic, a MonotoneQuintic or \
+             a MonotoneQuartic",
         ))
     }
 
@@ -77,31 +61,17 @@ impl MonotoneSpline {
         Self::nodal(slf, |f| f.y().to_vec())
     }
 
-    /// Slopes at the knots, in the shape of y; a fresh array.
+    /// Slopes at the points, in the shape of y; a fresh array.
     #[getter]
     fn slopes<'py>(slf: &Bound<'py, Self>) -> PyResult<FloatArray<'py>> {
         Self::nodal(slf, monotone::MonotoneSpline::slopes)
     }
 
-    /// Second derivatives at the knots, in the shape of y (of the quartic, which is C¹, from the
-    /// right, at the last knot from the left); a fresh array.
+    /// Second derivatives at the points, in the shape of y (where they jump, as those of the quartic do, from
+    /// the right, at the last point from the left); a fresh array.
     #[getter]
     fn second_derivatives<'py>(slf: &Bound<'py, Self>) -> PyResult<FloatArray<'py>> {
         Self::nodal(slf, monotone::MonotoneSpline::second_derivatives)
-    }
-
-    /// The paper's shape parameter α of every segment. Of the quintic with slope 0 at the segment's
-    /// start: ±∞, or 0 where any would do.
-    #[getter]
-    fn alpha<'py>(slf: &Bound<'py, Self>) -> PyResult<FloatArray<'py>> {
-        Self::shape_parameter(slf, false)
-    }
-
-    /// The paper's shape parameter β of every segment. Of the quintic with slope 0 at the segment's
-    /// end: ±∞, or 0 where any would do.
-    #[getter]
-    fn beta<'py>(slf: &Bound<'py, Self>) -> PyResult<FloatArray<'py>> {
-        Self::shape_parameter(slf, true)
     }
 
     /// Bending energy ``∫ f''² dx`` over the knots: a float, or one a column.
@@ -188,6 +158,7 @@ impl MonotoneSpline {
 /// Bending energy of every column.
 pub(crate) fn energies(fits: &Fits) -> Vec<f64> {
     match fits {
+        Fits::Cubic(fits) => fits.iter().map(|f| f.bending_energy()).collect(),
         Fits::Quartic(fits) => fits.iter().map(|f| f.bending_energy()).collect(),
         Fits::Quintic(fits) => fits.iter().map(|f| f.bending_energy()).collect(),
         Fits::Pieces(_) => Vec::new(),
@@ -197,8 +168,13 @@ pub(crate) fn energies(fits: &Fits) -> Vec<f64> {
 /// How the fit of every column went.
 pub(crate) fn diagnostics(fits: &Fits) -> Vec<MonotoneDiagnostics> {
     match fits {
+        Fits::Cubic(fits) => {
+            fits.iter().map(|f| MonotoneDiagnostics::of(f.diagnostics())).collect()
+        }
         Fits::Quartic(fits) => fits.iter().map(MonotoneDiagnostics::quartic).collect(),
-        Fits::Quintic(fits) => fits.iter().map(MonotoneDiagnostics::quintic).collect(),
+        Fits::Quintic(fits) => {
+            fits.iter().map(|f| MonotoneDiagnostics::of(f.diagnostics())).collect()
+        }
         Fits::Pieces(_) => Vec::new(),
     }
 }
