@@ -1,4 +1,4 @@
-"""The command line's check of monotonicity: of any library's functions, exactly."""
+"""`check_monotone`: monotonicity and convexity of any library's functions, exactly."""
 
 import json
 
@@ -7,8 +7,8 @@ import pytest
 from scipy.interpolate import BPoly, CubicSpline, PchipInterpolator, PPoly, make_interp_spline
 
 import polygons
+import shapespline as ss
 from shapespline import _convert, cli
-from shapespline._monotone_check import check_monotone
 
 
 def bernstein(polynomial):
@@ -23,16 +23,17 @@ def test_monotonicity_of_others_functions_agrees_with_sampling(name, maker):
     columns = polygons.load(name)
     x, y = columns["x"], columns["y"]
     f = maker(x, y)
-    report = check_monotone(np.column_stack([x, y]), _convert.piecewise(f))
+    report = ss.check_monotone(x, y, f)
+    verdicts = report.monotonicity
     slope = f.derivative()
     for i, secant in enumerate(np.diff(y) / np.diff(x)):
         t = np.linspace(x[i], x[i + 1], 5001)
         if secant == 0:
-            assert report.satisfied[i] == (np.ptp(f(t)) < 1e-9)
+            assert verdicts.satisfied[i] == (np.ptp(f(t)) < 1e-9)
         else:
             least = (slope(t[1:-1]) / secant).min()
-            assert report.margins[i] == pytest.approx(least, rel=1e-3, abs=1e-3)
-            assert abs(least) < 1e-9 or report.satisfied[i] == (least > 0)
+            assert verdicts.margins[i] == pytest.approx(least, rel=1e-3, abs=1e-3)
+            assert abs(least) < 1e-9 or verdicts.satisfied[i] == (least > 0)
     assert report.ok == (maker is PchipInterpolator)
 
 
@@ -41,14 +42,63 @@ def test_a_narrow_dip_is_found():
     s = np.polynomial.Polynomial([-0.3, 1])
     slope = s**2 * (s - 0.4) ** 2 - 1e-9
     f = slope.integ()
-    points = np.array([[0.0, f(0)], [1.0, f(1)]])
-    report = check_monotone(points, bernstein(f), tolerance=1e-12)
+    x, y = [0.0, 1.0], [f(0), f(1)]
+    report = ss.check_monotone(x, y, bernstein(f), tolerance=1e-12)
     assert not report.ok
-    assert min(abs(report.locations[0] - 0.3), abs(report.locations[0] - 0.7)) < 1e-3
+    assert (
+        min(
+            abs(report.monotonicity.locations[0] - 0.3), abs(report.monotonicity.locations[0] - 0.7)
+        )
+        < 1e-3
+    )
     assert str(report).splitlines()[-1].split()[:2] == ["monotonicity", "0"]
     raised = f + 2e-9 * np.polynomial.Polynomial([0, 1])
-    points[1, 1] = raised(1)
-    assert check_monotone(points, bernstein(raised), tolerance=1e-12).ok
+    assert ss.check_monotone(x, [f(0), raised(1)], bernstein(raised), tolerance=1e-12).ok
+
+
+@pytest.mark.parametrize("maker", [CubicSpline, PchipInterpolator, make_interp_spline])
+@pytest.mark.parametrize("rough", [0.0, 0.3])
+def test_convexity_agrees_with_sampling(rng, maker, rough):
+    for _ in range(20):
+        x = np.cumsum(rng.uniform(0.5, 1.5, 9))
+        y = x**2 / 5 + rough * rng.normal(size=9)
+        f = maker(x, y)
+        report = ss.check_monotone(x, y, f, convex="data")
+        signs = report.convexity.asked
+        node = np.sign(np.diff(np.diff(y) / np.diff(x)))
+        node = np.r_[node[0], node, node[-1]]
+        np.testing.assert_array_equal(signs, node[:-1] == node[1:])
+        for i in np.flatnonzero(signs):
+            t = np.linspace(x[i], x[i + 1], 2001)[1:-1]
+            least = (f(t, 2) if hasattr(f, "roots") else f.derivative(2)(t)) * node[i]
+            assert report.convexity.violated[i] == (least.min() < -1e-6)
+        given = ss.check_monotone(x, y, f, convex=-np.ones(8))
+        assert given.counts()["convexity"][1] == 8
+
+
+@pytest.mark.parametrize(
+    ("arguments", "options", "argument", "index"),
+    [
+        (([0, 1, 1], [0, 1, 2]), {}, "x", 2),
+        (([0, 1], [0, np.nan]), {}, "y", 1),
+        (([0, 1, 2], [0, 1]), {}, "y", None),
+        (([0, 1, 2], [0, 1, 2]), {"convex": [1, 2]}, "convex", 1),
+        (([0, 1, 2], [0, 1, 2]), {"convex": [1]}, "convex", None),
+        (([0, 1, 2], [0, 1, 2]), {"convex": "yes"}, "convex", None),
+        (([0, 1, 2], [0, 1, 2]), {"tolerance": -1.0}, "tolerance", None),
+    ],
+)
+def test_bad_arguments(arguments, options, argument, index):
+    with pytest.raises(ss.InputError) as error:
+        ss.check_monotone(*arguments, ss.MonotoneCubic([0, 1, 2], [0, 1, 2]), **options)
+    assert (error.value.argument, error.value.index) == (argument, index)
+
+
+def test_reports_refuse_to_be_true_or_false():
+    report = ss.check_monotone([0, 1], [0, 1], ss.MonotoneCubic([0, 1], [0, 1]))
+    assert report.ok
+    with pytest.raises(TypeError, match="ambiguous"):
+        bool(report)
 
 
 @pytest.mark.parametrize(

@@ -39,11 +39,13 @@ from shapespline._core import (
     minimal_bending,
 )
 from shapespline._errors import ConvergenceError, InputError
+from shapespline._functions import check_monotone, fit_monotone, histospline
 from shapespline._many import Fits, fit_many
+from shapespline._monotone_check import MonotoneRecord, MonotoneReport
 from shapespline._polygon import PolygonShape, polygon_shape
 from shapespline._records import NodeRecord, OscillationRecord, UndecidedRecord
 from shapespline._shape import InflectionCount, check_shape, fairness, inflection_count
-from shapespline._verbs import fit, fit_monotone
+from shapespline._verbs import fit
 
 __all__ = [
     "CatmullRom",
@@ -60,6 +62,8 @@ __all__ = [
     "MonotoneDiagnostics",
     "MonotoneQuartic",
     "MonotoneQuintic",
+    "MonotoneRecord",
+    "MonotoneReport",
     "MonotoneRows",
     "MonotoneSpline",
     "NodeRecord",
@@ -78,12 +82,14 @@ __all__ = [
     "UndecidedRecord",
     "__version__",
     "bezier_like",
+    "check_monotone",
     "check_shape",
     "fairness",
     "fit",
     "fit_many",
     "fit_many_monotone",
     "fit_monotone",
+    "histospline",
     "inflection_count",
     "interchange",
     "minimal_bending",

@@ -24,7 +24,7 @@ from shapespline._files import write_curve
 from shapespline._io import STREAM, FileError, UsageError, name_of, refuse_overwriting, write
 from shapespline._kinds import KINDS
 from shapespline._methods import METHODS, Method
-from shapespline._monotone_check import check_monotone
+from shapespline._monotone_check import check as check_function
 from shapespline._progress import progress
 from shapespline._tables import read_function, read_points, unit_of, write_table
 
@@ -139,7 +139,8 @@ def _fit_curve(name: str, data: Points, given: dict[str, Any]) -> _Fit:
 def _fit_function(name: str, data: Points, given: dict[str, Any]) -> _Fit:
     tolerance = given.pop("tolerance", 1e-9)
     function = KINDS[name].fit(*data.points.T, **given)
-    report = check_monotone(data.points, piecewise(function), tolerance=tolerance)
+    x, y = data.points.T
+    report = check_function(x, y, piecewise(function), tolerance=tolerance)
     return _Fit(function, report)
 
 

@@ -1,10 +1,9 @@
-"""The verbs: a curve that keeps the shape of its points, a function as monotone as its data."""
+"""The verb `fit`: one curve through points that keeps their shape, by any method."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Literal, overload
 
-from shapespline._kinds import KINDS, kind_of
 from shapespline._methods import given_options, method_of
 
 if TYPE_CHECKING:
@@ -15,10 +14,6 @@ if TYPE_CHECKING:
     from shapespline._core import (
         CatmullRom,
         FairSpline,
-        MonotoneCubic,
-        MonotoneQuartic,
-        MonotoneQuintic,
-        MonotoneSpline,
         NuSpline,
         SpaceCurve,
         Tangents,
@@ -27,9 +22,7 @@ if TYPE_CHECKING:
         _Continuity,
         _Criterion,
         _Directions,
-        _Ends,
         _Energy,
-        _Extrapolate,
         _Parametrization,
         _Strategy,
     )
@@ -231,129 +224,3 @@ def fit(
     if boundary is not None:
         given["boundary"] = boundary
     return entry.fit(points, chosen, closed=closed, repeated=repeated, **given)
-
-
-@overload
-def fit_monotone(
-    x: ArrayLike,
-    y: ArrayLike,
-    axis: int = ...,
-    *,
-    kind: Literal["cubic"] = ...,
-    slopes: ArrayLike | None = ...,
-    ends: _Ends | None = ...,
-    layer: float | None = ...,
-    min_slope: float | None = ...,
-    extrapolate: _Extrapolate = ...,
-) -> MonotoneCubic: ...
-@overload
-def fit_monotone(
-    x: ArrayLike,
-    y: ArrayLike,
-    axis: int = ...,
-    *,
-    kind: Literal["quintic"],
-    slopes: Literal["optimal", "fritsch-butland"] | ArrayLike | None = ...,
-    fairness: Literal["bending", "parametric"] | None = ...,
-    clip: bool | None = ...,
-    extrapolate: _Extrapolate = ...,
-) -> MonotoneQuintic: ...
-@overload
-def fit_monotone(
-    x: ArrayLike,
-    y: ArrayLike,
-    axis: int = ...,
-    *,
-    kind: Literal["quartic"],
-    slopes: Literal["fritsch-butland"] | ArrayLike | None = ...,
-    shape: float | tuple[ArrayLike, ArrayLike] | None = ...,
-    extrapolate: _Extrapolate = ...,
-) -> MonotoneQuartic: ...
-def fit_monotone(
-    x: ArrayLike,
-    y: ArrayLike,
-    axis: int = 0,
-    *,
-    kind: Literal["cubic", "quintic", "quartic"] = "cubic",
-    slopes: str | ArrayLike | None = None,
-    ends: _Ends | None = None,
-    layer: float | None = None,
-    min_slope: float | None = None,
-    fairness: Literal["bending", "parametric"] | None = None,
-    clip: bool | None = None,
-    shape: float | tuple[ArrayLike, ArrayLike] | None = None,
-    extrapolate: _Extrapolate = "linear",
-) -> MonotoneSpline:
-    """Interpolate data by a function that rises where they rise and falls where they fall.
-
-    Parameters
-    ----------
-    x : array_like, shape (n,)
-        Strictly increasing, n ≥ 2.
-    y : array_like
-        Data of any shape with n entries along ``axis``; every column is fitted, in parallel.
-    axis : int
-        The axis of y that goes with x.
-    kind : {"cubic", "quintic", "quartic"}
-        `MonotoneCubic`, C² and of the least bending energy; `MonotoneQuintic`, C² with knots at the
-        data alone; or `MonotoneQuartic`, C¹ and local.
-    slopes : array_like or str, optional
-        As for the class.
-    ends, layer, min_slope
-        Kind ``"cubic"``: as for `MonotoneCubic`.
-    fairness, clip
-        Kind ``"quintic"``: as for `MonotoneQuintic`.
-    shape
-        Kind ``"quartic"``: as for `MonotoneQuartic`.
-    extrapolate : {"linear", "clip", "periodic", True, False} or pair of them
-        What the function is outside the data, as for `MonotoneCubic`.
-
-    Returns
-    -------
-    MonotoneCubic, MonotoneQuintic or MonotoneQuartic
-        The function.
-
-    Raises
-    ------
-    ValueError
-        If data or an option are unusable.
-    TypeError
-        If an argument is of a wrong kind, or an option is not one of the kind; the message names
-        the kinds that have it.
-
-    See Also
-    --------
-    fit_many_monotone : many data sets with abscissae of their own at once, in parallel.
-
-    Notes
-    -----
-    Algorithm, guarantee, cost and sources are those of the class.
-
-    Examples
-    --------
-    >>> import shapespline as ss
-    >>> f = ss.fit_monotone([0, 1, 2, 4], [0, 0, 1, 5])
-    >>> f([0.5, 2.0, 4.0])
-    array([0., 1., 5.])
-    >>> ss.fit_monotone([0, 1, 2, 4], [0, 0, 1, 5], kind="quartic")
-    <MonotoneQuartic: 4 knots from 0 to 4, degree 4>
-    """
-    options = {
-        "slopes": slopes,
-        "ends": ends,
-        "layer": layer,
-        "min_slope": min_slope,
-        "fairness": fairness,
-        "clip": clip,
-        "shape": shape,
-    }
-    entry = kind_of(kind)
-    given = {name: value for name, value in options.items() if value is not None}
-    for name in given:
-        if name not in entry.options:
-            having = ", ".join(f"'{n}'" for n, other in KINDS.items() if name in other.options)
-            raise TypeError(
-                f"{name} is no option of kind '{kind}': its options are "
-                f"{', '.join(entry.options)}; kinds that have it: {having}"
-            )
-    return entry.fit(x, y, axis, extrapolate=extrapolate, **given)

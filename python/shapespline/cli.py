@@ -28,7 +28,8 @@ from shapespline._io import (
     shortened,
     write,
 )
-from shapespline._monotone_check import check_monotone
+from shapespline._monotone_check import check as check_function
+from shapespline._monotone_check import increasing
 from shapespline._options import (
     BOUNDARIES,
     Parser,
@@ -143,7 +144,8 @@ def _check(options: argparse.Namespace) -> int:
         with progress(f"checking {len(data.points):,} points"):
             if monotone:
                 tolerance = 1e-9 if asked["tolerance"] is None else asked["tolerance"]
-                report = check_monotone(data.points, curve.curve, tolerance=tolerance)
+                x, y = increasing(data.points)
+                report = check_function(x, y, curve.curve, tolerance=tolerance)
             else:
                 closed, repeated = _closing(options, curve, len(data.points))
                 report = _core._check_shape(

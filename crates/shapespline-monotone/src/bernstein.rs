@@ -22,6 +22,25 @@ pub(crate) fn value(b: &[f64], t: f64) -> f64 {
     w[0]
 }
 
+/// The value of a quadratic such that rounding cannot change its sign where it is of one sign on [0, 1]: with the roots r
+/// of the sizes of its end coefficients `(r₀(1−t) − r₁t)² + 2(b + r₀r₁)t(1−t)`, whose terms are not negative then.
+pub(crate) fn quadratic(c: [f64; 3], t: f64) -> f64 {
+    /// Error of b, a sum of terms of its size, relative to r₀r₁.
+    const NOISE: f64 = 16.0 * f64::EPSILON;
+    let falls = c[0] + c[2] < 0.0;
+    let [a0, b, a1] = if falls { [0.0 - c[0], 0.0 - c[1], 0.0 - c[2]] } else { c };
+    let s = 1.0 - t;
+    let inside = 0.0 < t && t < 1.0 && a0 >= 0.0 && a1 >= 0.0 && b < 0.0;
+    let product = if inside { a0.sqrt() * a1.sqrt() } else { 0.0 };
+    let value = if inside && b >= -(1.0 + NOISE) * product {
+        let difference = a0.sqrt() * s - a1.sqrt() * t;
+        difference * difference + 2.0 * (b + product).max(0.0) * (t * s)
+    } else {
+        (a0 * s + b * t) * s + (b * s + a1 * t) * t
+    };
+    if falls { 0.0 - value } else { value }
+}
+
 /// Coefficients on a part of [0, 1], whose ends are those of the part to the last bit (de Casteljau, twice).
 pub(crate) fn part(b: &[f64], [from, to]: [f64; 2]) -> Vec<f64> {
     let n = b.len();

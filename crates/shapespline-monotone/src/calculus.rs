@@ -8,21 +8,6 @@ use crate::integrals::{Pieces, whole};
 use crate::piecewise::PiecewisePolynomial;
 use crate::spline::{Kind, MonotoneSpline};
 
-/// A quadratic that is nowhere negative on [0, 1], from its Bernstein coefficients, such that rounding cannot make it
-/// negative there: `(r₀(1−t) − r₁t)² + 2(b + r₀r₁)t(1−t)` with the roots r of the end coefficients.
-fn signless([a0, b, a1]: [f64; 3], t: f64) -> f64 {
-    let (s, inside) = (1.0 - t, (0.0..=1.0).contains(&t));
-    if b >= 0.0 || !inside {
-        return (a0 * s + b * t) * s + (b * s + a1 * t) * t;
-    }
-    if t == 0.0 || t == 1.0 {
-        return if t == 0.0 { a0 } else { a1 };
-    }
-    let [r0, r1] = [a0, a1].map(|a| a.max(0.0).sqrt());
-    let difference = r0 * s - r1 * t;
-    difference * difference + 2.0 * (b + r0 * r1).max(0.0) * (t * s)
-}
-
 impl MonotoneSpline {
     /// Bernstein coefficients of the first derivative, scaled; its ends are the slopes to the last bit.
     fn slope_coefficients(&self, i: usize) -> ([f64; 5], usize) {
@@ -132,9 +117,10 @@ impl MonotoneSpline {
         }
         let (c, degree) = self.unscaled_coefficients(i, nu);
         let value = if nu == 1 && matches!(self.kind, Kind::Cubic { .. }) {
-            let falling = self.y[i + 1] < self.y[i];
-            let size = signless([c[0], c[1], c[2]].map(|c| if falling { -c } else { c }), t);
-            if falling { 0.0 - size } else { size }
+            // What rounding leaves of a slope of the wrong sign is none.
+            let rises = self.y[i + 1] >= self.y[i];
+            let value = bernstein::quadratic([c[0], c[1], c[2]], t);
+            if rises { value.max(0.0) } else { value.min(0.0) }
         } else {
             bernstein::value(&c[..=degree], t)
         };

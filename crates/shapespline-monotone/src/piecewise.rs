@@ -137,6 +137,9 @@ impl PiecewisePolynomial {
             return 0.0;
         }
         let t = (x - self.x[i]) / self.h(i);
+        if let (0, &[a, b, c]) = (nu, self.piece(i)) {
+            return bernstein::quadratic([a, b, c], t);
+        }
         if nu == 0 {
             return bernstein::value(self.piece(i), t);
         }
