@@ -8,11 +8,12 @@ sampled, so a dip between two points is found however narrow it is.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from shapespline._errors import InputError
+from shapespline._pickling import sealed
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -30,8 +31,7 @@ __all__ = ["MonotoneRecord", "MonotoneReport", "check", "increasing", "signs_of_
 LISTED = 20
 
 
-@dataclass(frozen=True)
-class MonotoneRecord:
+class MonotoneRecord(NamedTuple):
     """A criterion on a segment.
 
     ``margin`` is the least value there of f'/(Δy/Δx) (monotonicity), or of f'' in the direction
@@ -52,8 +52,12 @@ class MonotoneRecord:
     margin: float
     location: float
 
+    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]:
+        """Pickle by the fields."""
+        return sealed(type(self), *self)
 
-@dataclass(frozen=True)
+
+@dataclass(frozen=True, eq=False)
 class Verdicts:
     """A criterion on all segments: margins, where, what rounding may hide, where it is asked."""
 
@@ -89,7 +93,7 @@ class Verdicts:
             yield MonotoneRecord(i, criterion, verdict, margin, place)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class MonotoneReport:
     """Whether a function rises, falls and bends as its data do: what `check_monotone` gives.
 
@@ -165,6 +169,10 @@ class MonotoneReport:
             "violations": [record for record in records if record["satisfied"] is False],
             "undecided": [record for record in records if record["satisfied"] is None],
         }
+
+    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]:
+        """Pickle by the fields."""
+        return sealed(type(self), self.monotonicity, self.convexity)
 
     def __bool__(self) -> bool:
         """Refuse: whether a report is true could mean several things."""
