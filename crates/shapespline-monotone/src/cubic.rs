@@ -1,7 +1,7 @@
 //! The monotone C² cubic: of all monotone functions through the data the one with the least bending energy.
 
 use crate::MonotoneError;
-use crate::data::{Data, out_of_range};
+use crate::data::{Data, PowerOfTwo, Units, out_of_range};
 use crate::energy::Fairness;
 use crate::extrapolation::{Continuation, Extrapolation};
 use crate::interrupt::{GoOn, ask};
@@ -112,15 +112,50 @@ impl MonotoneCubic {
         ask(go_on)?;
         data.check_curvature(y)?;
         let (problem, first) = problem(&data, options)?;
+        let extrapolate = extrapolation(options, x, y);
+        Self::solved(&problem, first, [x, y], data.units(), options.layer, extrapolate, go_on)
+    }
+
+    /// The least-energy function through increasing (`sign` 1) or decreasing (−1) `y` whose rises are known to more
+    /// digits than their differences have: their sizes, in the units of y given. Natural ends, no layers.
+    pub(crate) fn through(
+        [x, y]: [&[f64]; 2],
+        rises: &[f64],
+        unit: i32,
+        sign: f64,
+        extrapolate: Extrapolation,
+        go_on: GoOn<'_>,
+    ) -> Result<Self, MonotoneError> {
+        let data = Data::new(x, y)?;
+        data.check_curvature(y)?;
+        let mut problem = Problem::new(&data);
+        let scale = PowerOfTwo::new(unit - data.ey);
+        for (i, rise) in rises.iter().enumerate() {
+            problem.d[i] = scale.scale(*rise);
+            problem.sign[i] = if *rise > 0.0 { sign } else { 0.0 };
+        }
+        for i in 0..x.len() {
+            problem.held[i] = problem.is_level(i);
+        }
+        Self::solved(&problem, 0, [x, y], data.units(), 0.0, extrapolate, go_on)
+    }
+
+    fn solved(
+        problem: &Problem,
+        first: usize,
+        [x, y]: [&[f64]; 2],
+        units: Units,
+        layer: f64,
+        extrapolate: Extrapolation,
+        go_on: GoOn<'_>,
+    ) -> Result<Self, MonotoneError> {
         let found = problem.solve(None, go_on)?;
-        let own = first..first + data.len();
+        let own = first..first + x.len() - 1;
         let (energies, gaps) = problem.certificate(&found.m);
         let sum = |values: &[f64]| values[own.clone()].iter().sum::<f64>();
         let (least, gap) = (sum(&energies), sum(&gaps));
-        let Layered { m, layers, solves, converged } =
-            layered(&problem, found.m, options.layer, go_on)?;
-        let units = data.units();
-        let (pieces, energy) = Pieces::new(&problem, units, [x, y], &m, layers.as_ref(), first);
+        let Layered { m, layers, solves, converged } = layered(problem, found.m, layer, go_on)?;
+        let (pieces, energy) = Pieces::new(problem, units, [x, y], &m, layers.as_ref(), first);
         ask(go_on)?;
         let out = |energy: f64| units.energy_out(Fairness::Bending, energy);
         let diagnostics = Diagnostics {
@@ -135,7 +170,7 @@ impl MonotoneCubic {
         };
         let gaps = gaps[own].iter().map(|gap| out(*gap)).collect();
         let (level, lower_bound) = (pieces.level.clone(), out((least - gap).max(0.0)));
-        let spline = MonotoneSpline::cubic(units, [x, y], pieces, extrapolation(options, x, y));
+        let spline = MonotoneSpline::cubic(units, [x, y], pieces, extrapolate);
         // A second derivative beyond double precision: refuse rather than hand out infinities.
         if let Some(i) = spline.overflow() {
             let i = spline.segment_of_knot(i);

@@ -84,6 +84,42 @@ pub enum MonotoneError {
         /// What it breaks: "must be 0 at a turn of the data" and so on.
         rule: &'static str,
     },
+    /// An entry that breaks a rule.
+    #[error("{argument}[{index}] {rule}, got {value}")]
+    Entry {
+        /// The argument.
+        argument: &'static str,
+        /// The entry.
+        index: usize,
+        /// Its value.
+        value: f64,
+        /// What it breaks: "must be positive" and so on.
+        rule: &'static str,
+    },
+    /// A number that breaks a rule.
+    #[error("{argument} {rule}, got {value}")]
+    Number {
+        /// The argument.
+        argument: &'static str,
+        /// Its value.
+        value: f64,
+        /// What it breaks.
+        rule: &'static str,
+    },
+    /// A residual that no monotone function between the bounds has.
+    #[error("residual must be at least {least}, that of the isotonic regression, got {value}")]
+    Residual {
+        /// The residual given.
+        value: f64,
+        /// The least there is.
+        least: f64,
+    },
+    /// Abscissae that are all the same.
+    #[error("x must have at least two distinct values, got {found}")]
+    Distinct {
+        /// Distinct values.
+        found: usize,
+    },
     /// A share of an interval or a secant that is out of its range.
     #[error("{argument} must lie in {range}, got {value}")]
     Share {

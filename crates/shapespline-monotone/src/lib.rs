@@ -5,6 +5,7 @@
 //! - [`MonotoneQuartic`]: C¹, local. On every segment the quartic Bézier-like curve (3) of the paper.
 //! - [`MonotoneQuintic`]: C², global. On every segment a quintic; slopes and second derivatives at the knots are
 //!   chosen so that a bending energy is least.
+//! - [`smooth_monotone`]: noisy data, smoothed by monotone cubics.
 //! - [`bezier_like`]: the curves themselves, in any dimension.
 //!
 //! # Guarantee
@@ -63,6 +64,7 @@ mod roots;
 #[cfg(feature = "nlopt")]
 pub mod second_opinion;
 mod slopes;
+mod smooth;
 mod spline;
 mod stretches;
 mod tiles;
@@ -81,4 +83,5 @@ pub use many::{MonotoneMany, fit_columns, fit_rows};
 pub use piecewise::PiecewisePolynomial;
 pub use quartic::{MonotoneQuartic, QuarticOptions, Shape};
 pub use quintic::{Diagnostics, MonotoneQuintic, QuinticOptions, Slopes, Solver};
+pub use smooth::{PenaltyChoice, SmoothOptions, SmoothedMonotone, Smoothing, smooth_monotone};
 pub use spline::MonotoneSpline;

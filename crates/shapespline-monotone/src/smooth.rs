@@ -1,0 +1,180 @@
+//! Smoothing by monotone cubics: the monotone function nearest to noisy data for its bending energy.
+//!
+//! [`smooth_monotone`] minimises `Σ w(y − f(x))² + λ ∫f''² dx` over **all** monotone functions f. Whatever the values at
+//! the data are, the best function through them is the [`MonotoneCubic`] with natural ends, whose energy `E(m₀, m₁, d)`
+//! per interval is convex in the slopes at its ends and its rise. So the program is convex in the first value, the rises
+//! `d ≥ 0` and the slopes `m ≥ 0`, with `fᵢ = f₀ + Σd`. (Values as unknowns would lose the digits: rises of `h³`.)
+//!
+//! 1. Without constraints it is quadratic, the smoothing spline; where that is monotone it is the answer.
+//! 2. Else a primal–dual interior point comes near to the answer (`interior.rs`), and
+//! 3. Newton's method on what is free ends there (`finish.rs`). Both solve their systems by orthogonal elimination from
+//!    node to node (`system.rs`). O(N) per step.
+//!
+//! As λ falls to 0 the values become those of the isotonic regression (`pool.rs`): the data, where they are monotone.
+
+use crate::MonotoneError;
+use crate::cubic::MonotoneCubic;
+use crate::extrapolation::Extrapolation;
+use crate::interrupt::ask;
+use input::Input;
+use penalty::{LINE, Optima};
+use std::ops::{ControlFlow, Deref};
+
+mod finish;
+mod input;
+mod interior;
+mod interval;
+mod penalty;
+mod pool;
+mod system;
+#[cfg(test)]
+mod tests;
+
+/// How the penalty λ is chosen.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum PenaltyChoice {
+    /// The penalty of the least generalised cross-validation score, with the degrees of freedom of what no constraint
+    /// holds.
+    #[default]
+    CrossValidated,
+    /// This λ. With 0 the isotonic regression: the interpolant of monotone data.
+    Fixed(f64),
+    /// The largest λ with `Σ w(y − f)²` at most this.
+    FromResidual(f64),
+}
+
+/// How [`smooth_monotone`] smooths.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SmoothOptions {
+    /// Weights of the data, positive; 1 by default.
+    pub weights: Option<Vec<f64>>,
+    /// How the penalty is chosen.
+    pub penalty: PenaltyChoice,
+    /// Whether the function increases; `None`: whether the weighted regression line does.
+    pub increasing: Option<bool>,
+    /// Bounds of the function, which the data may leave; infinite ones bound nothing.
+    pub bounds: Option<[f64; 2]>,
+    /// What the function is outside the data.
+    pub extrapolate: Extrapolation,
+}
+
+impl Default for SmoothOptions {
+    fn default() -> Self {
+        Self {
+            weights: None,
+            penalty: PenaltyChoice::default(),
+            increasing: Some(true),
+            bounds: None,
+            extrapolate: Extrapolation::default(),
+        }
+    }
+}
+
+/// How the smoothing went.
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Smoothing {
+    /// The penalty λ; +∞ for a straight line.
+    pub penalty: f64,
+    /// `Σ w(y − f)²`.
+    pub residual: f64,
+    /// The trace of the derivative of the values in the data, where constraints that are active stay so.
+    pub degrees_of_freedom: f64,
+    /// Whether the function increases.
+    pub increasing: bool,
+    /// Linear systems factored for the final penalty.
+    pub steps: usize,
+    /// Whether the optimum was reached.
+    pub converged: bool,
+}
+
+/// A monotone smoothing function, which dereferences to the [`MonotoneCubic`], and how it was found.
+#[derive(Debug, Clone)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct SmoothedMonotone {
+    /// The function: of all monotone ones through its values at the data that of least energy.
+    pub function: MonotoneCubic,
+    /// How it was found.
+    pub smoothing: Smoothing,
+}
+
+impl Deref for SmoothedMonotone {
+    type Target = MonotoneCubic;
+    fn deref(&self) -> &MonotoneCubic {
+        &self.function
+    }
+}
+
+/// The monotone function of least `Σ w(y − f(x))² + λ ∫f''² dx`. O(N) per step of some 20.
+///
+/// `x` must not decrease. Data at equal abscissae, or at ones nearer than 2⁻³⁰ of their range, are merged: their weights
+/// are added and their weighted means taken. Where monotonicity is no constraint the function is the smoothing spline.
+///
+/// # Errors
+/// [`MonotoneError`] naming argument, index and value: lengths that differ, NaN or infinity, x decreasing or all the
+/// same, weights that are not positive, a negative penalty or residual, a residual below that of the isotonic
+/// regression, bounds without room between them, quantities that overflow.
+///
+/// ```
+/// use shapespline_monotone::{PenaltyChoice, SmoothOptions, smooth_monotone};
+/// let (x, y) = ([0.0, 1.0, 2.0, 3.0], [0.0, 1.2, 0.9, 2.0]);
+/// let options = SmoothOptions { penalty: PenaltyChoice::Fixed(0.1), ..SmoothOptions::default() };
+/// let f = smooth_monotone(&x, &y, &options)?;
+/// assert!(f.slopes().iter().all(|m| *m >= 0.0));
+/// # Ok::<(), shapespline_monotone::MonotoneError>(())
+/// ```
+pub fn smooth_monotone(
+    x: &[f64],
+    y: &[f64],
+    options: &SmoothOptions,
+) -> Result<SmoothedMonotone, MonotoneError> {
+    SmoothedMonotone::new_with(x, y, options, &|| ControlFlow::Continue(()))
+}
+
+impl SmoothedMonotone {
+    /// As [`smooth_monotone`], with a function that is called regularly; return `Break` to cancel.
+    ///
+    /// # Errors
+    /// As [`smooth_monotone`], and [`MonotoneError::Interrupted`] if cancelled.
+    pub fn new_with(
+        x: &[f64],
+        y: &[f64],
+        options: &SmoothOptions,
+        go_on: &(dyn Fn() -> ControlFlow<()> + Sync),
+    ) -> Result<Self, MonotoneError> {
+        let input = Input::new(x, y, options)?;
+        ask(go_on)?;
+        let mut optima = Optima::new(&input, go_on);
+        let lambda = match options.penalty {
+            PenaltyChoice::CrossValidated => optima.cross_validated()?,
+            PenaltyChoice::Fixed(penalty) => input.penalty_in(penalty),
+            PenaltyChoice::FromResidual(residual) => {
+                optima.of_residual(input.residual_in(residual), residual)?
+            }
+        };
+        let optimum = optima.at(lambda)?;
+        let freedom = optima.freedom(lambda, &optimum);
+        let mut f = Vec::new();
+        input.task.values(optimum.first, &optimum.sizes, &mut f);
+        let values = input.values_out(&f);
+        let rises = &optimum.sizes[..input.task.h.len()];
+        let data = [&input.x[..], &values[..]];
+        let function =
+            MonotoneCubic::through(data, rises, input.ey, input.sign, options.extrapolate, go_on)?;
+        let penalty = match options.penalty {
+            PenaltyChoice::Fixed(penalty) => penalty,
+            _ if lambda >= LINE => f64::INFINITY,
+            _ => input.penalty_out(lambda),
+        };
+        let smoothing = Smoothing {
+            penalty,
+            residual: input.residual_out(optimum.residual + input.within),
+            degrees_of_freedom: freedom,
+            increasing: input.sign > 0.0,
+            steps: optimum.steps,
+            converged: optimum.converged && function.diagnostics().converged,
+        };
+        Ok(Self { function, smoothing })
+    }
+}

@@ -1,0 +1,141 @@
+//! The penalised energy of one interval as a quadratic model in its end slopes and its rise.
+//!
+//! The least energy of an interval (see `cubic/piece.rs`) is convex in `(m₀, m₁, d)` jointly. Its Hessian is a sum of
+//! squares, and is kept as one, in coordinates in which no digits are lost:
+//! - one cubic: `E = κ²/h + 12ε²/h³` with `κ = m₁ − m₀` and `ε = d − h(m₀ + m₁)/2`, in which it is diagonal;
+//! - with a level part: `E = (4/9)S²/d` with `S = m₀^{3/2} + m₁^{3/2}`, and
+//!   `∂²E = (8/9)(gᵀg + S·diag(3/(4r₀), 3/(4r₁), 0))/d`, `g = (3r₀/2, 3r₁/2, −S/d)`.
+
+/// A root below which slopes count as 0 in quotients.
+const TINY_ROOT: f64 = 1e-160;
+
+/// `λE` of an interval, and its derivatives.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Model {
+    pub(super) energy: f64,
+    /// Whether there is a level part, and so in which coordinates the derivatives are.
+    pub(super) level: bool,
+    /// In `(ε, κ, 0)`; with a level part in `(d, m₀, m₁)`.
+    pub(super) gradient: [f64; 3],
+    /// Roots of the Hessian: of its diagonal in ε and κ; with a level part the row g in `(d, m₀, m₁)` and the roots of
+    /// what grows as a slope falls to 0, in m₀ and m₁.
+    pub(super) rows: [f64; 5],
+}
+
+impl Model {
+    /// What a rise that is held at 0 between slopes held at 0 adds.
+    pub(super) const HELD: Self =
+        Self { energy: 0.0, level: true, gradient: [0.0; 3], rows: [0.0; 5] };
+
+    pub(super) fn new(lambda: f64, m: [f64; 2], d: f64, h: f64) -> Self {
+        if is_cubic(m, d, h) {
+            Self::cubic(lambda, m, d, h)
+        } else {
+            Self::with_level(lambda, m, d)
+        }
+    }
+
+    /// One cubic, whether or not it is monotone.
+    pub(super) fn cubic(lambda: f64, m: [f64; 2], d: f64, h: f64) -> Self {
+        let delta = d / h;
+        // ε from the deviations from the secant: no cancellation on straight data.
+        let (kappa, epsilon) = (m[1] - m[0], -0.5 * h * ((m[0] - delta) + (m[1] - delta)));
+        let stiff = [24.0 * lambda / (h * h * h), 2.0 * lambda / h];
+        Self {
+            energy: 0.5 * (stiff[0] * epsilon * epsilon + stiff[1] * kappa * kappa),
+            level: false,
+            gradient: [stiff[0] * epsilon, stiff[1] * kappa, 0.0],
+            rows: [stiff[0].sqrt(), stiff[1].sqrt(), 0.0, 0.0, 0.0],
+        }
+    }
+
+    fn with_level(lambda: f64, m: [f64; 2], d: f64) -> Self {
+        let root = m.map(f64::sqrt);
+        let c = (root[0] * m[0] + root[1] * m[1]) / d;
+        let size = (8.0 / 9.0 * lambda / d).sqrt();
+        let own = |r: f64| (2.0 / 3.0 * lambda * (c / r.max(TINY_ROOT))).sqrt();
+        Self {
+            energy: 4.0 / 9.0 * lambda * c * c * d,
+            level: true,
+            gradient: [
+                -4.0 / 9.0 * lambda * c * c,
+                4.0 / 3.0 * lambda * c * root[0],
+                4.0 / 3.0 * lambda * c * root[1],
+            ],
+            rows: [
+                -c * size,
+                1.5 * root[0] * size,
+                1.5 * root[1] * size,
+                own(root[0]),
+                own(root[1]),
+            ],
+        }
+    }
+
+    /// The gradient in `(d, m₀, m₁)`.
+    pub(super) fn plain_gradient(&self, h: f64) -> [f64; 3] {
+        let [a, b, c] = self.gradient;
+        if self.level { [a, b, c] } else { [a, -0.5 * h * a - b, -0.5 * h * a + b] }
+    }
+
+    /// The part of the second derivative in `(m₀, m₁)` that grows as a slope falls to 0, and all of it.
+    pub(super) fn curvatures(&self, h: f64) -> [[f64; 2]; 2] {
+        let square = |v: f64| v * v;
+        if self.level {
+            let own = [square(self.rows[3]), square(self.rows[4])];
+            [own, [own[0] + square(self.rows[1]), own[1] + square(self.rows[2])]]
+        } else {
+            let all = square(0.5 * h * self.rows[0]) + square(self.rows[1]);
+            [[0.0; 2], [all; 2]]
+        }
+    }
+}
+
+/// Whether the least energy is that of one cubic.
+pub(super) fn is_cubic(m: [f64; 2], d: f64, h: f64) -> bool {
+    m[0] + m[1] - (m[0] * m[1]).sqrt() < 3.0 * d / h
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Gradients and sums of squares are the derivatives of the energy, in both forms.
+    #[test]
+    fn derivatives_are_those_of_the_energy() {
+        for (m0, m1, d, h) in [(0.3, 0.8, 1.2, 0.7), (9.0, 4.0, 1.2, 0.7), (5.0, 0.2, 0.4, 2.0)] {
+            let at = |v: [f64; 3]| Model::new(1.7, [v[1], v[2]], v[0], h);
+            let v = [d, m0, m1];
+            let own = at(v);
+            let e = 1e-5;
+            // The rows in (d, m₀, m₁).
+            let r = own.rows;
+            let rows: Vec<[f64; 3]> = if own.level {
+                vec![[r[0], r[1], r[2]], [0.0, r[3], 0.0], [0.0, 0.0, r[4]]]
+            } else {
+                vec![[r[0], -0.5 * h * r[0], -0.5 * h * r[0]], [0.0, -r[1], r[1]]]
+            };
+            for i in 0..3 {
+                let moved = |by: f64| {
+                    let mut v = v;
+                    v[i] += by;
+                    at(v)
+                };
+                let (up, down) = (moved(e), moved(-e));
+                let close = |a: f64, b: f64| {
+                    assert!((a - b).abs() < 1e-7 * (1.0 + b.abs()), "{a} {b}");
+                };
+                close((up.energy - down.energy) / (2.0 * e), own.plain_gradient(h)[i]);
+                for j in 0..3 {
+                    let second: f64 = rows.iter().map(|row| row[i] * row[j]).sum();
+                    let (a, b) = (up.plain_gradient(h)[j], down.plain_gradient(h)[j]);
+                    close((a - b) / (2.0 * e), second);
+                }
+                if i > 0 {
+                    let second: f64 = rows.iter().map(|row| row[i] * row[i]).sum();
+                    close(own.curvatures(h)[1][i - 1], second);
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,229 @@
+//! Optima for given penalties, and the choice of the penalty: by cross-validation or by the residual it leaves.
+
+use super::finish::{Optimum, active, finish};
+use super::input::Input;
+use super::interior::{State, minimise, unconstrained};
+use super::interval::Model;
+use super::pool::isotonic;
+use super::system::{HELD, System};
+use crate::MonotoneError;
+use crate::interrupt::GoOn;
+
+/// The relative gap at which the interior point hands over to Newton's method.
+const GAP: f64 = 1e-12;
+/// Scaled penalties from which the function is a straight line.
+pub(super) const LINE: f64 = 1e12;
+/// Scaled penalties below which rounding hides that the function is not the isotonic regression's.
+const NOTHING: f64 = 1e-40;
+/// How near the residual comes to the one given, relative to it, and evaluations at most.
+const NEAR: f64 = 1e-10;
+const EVALUATIONS: usize = 60;
+/// Decimal logarithms of scaled penalties that cross-validation tries first, and the width to which it narrows them.
+const STRAIGHT: i32 = 2;
+const NARROW: f64 = 0.02;
+
+/// Optima of one set of data.
+pub(super) struct Optima<'a> {
+    pub(super) input: &'a Input,
+    system: System,
+    go_on: GoOn<'a>,
+    /// The scaled penalty that searches call 1, so that they do the same whatever the units are.
+    unit: f64,
+}
+
+impl<'a> Optima<'a> {
+    pub(super) fn new(input: &'a Input, go_on: GoOn<'a>) -> Self {
+        let range: f64 = input.task.h.iter().sum();
+        let unit = range.powi(3) * input.task.w.iter().sum::<f64>();
+        Self { input, system: System::new(input.task.h.len()), go_on, unit }
+    }
+
+    /// The optimum for a scaled penalty.
+    pub(super) fn at(&mut self, lambda: f64) -> Result<Optimum, MonotoneError> {
+        let task = &self.input.task;
+        if lambda < NOTHING || self.input.rigid {
+            return Ok(self.isotonic());
+        }
+        let lambda = lambda.min(LINE);
+        if let Some(state) = unconstrained(task, lambda, &mut self.system) {
+            return Ok(self.without_finish(&state, true));
+        }
+        let state = minimise(task, lambda, None, GAP, &mut self.system, self.go_on)?;
+        let mut found = finish(task, lambda, &state, &mut self.system)
+            .unwrap_or_else(|| self.without_finish(&state, true));
+        found.converged &= state.gap <= GAP;
+        Ok(found)
+    }
+
+    /// A state as it stands: rises that are 0 at the optimum are tiny in it.
+    fn without_finish(&self, state: &State, converged: bool) -> Optimum {
+        let task = &self.input.task;
+        let mut f = Vec::new();
+        task.values(state.first, &state.sizes, &mut f);
+        let (first, steps, residual) = (state.first, state.steps, task.residual(&f));
+        let (held, sizes) = (active(task, state).0, state.sizes.clone());
+        Optimum { first, sizes, held, residual, steps, converged }
+    }
+
+    /// The isotonic regression.
+    pub(super) fn isotonic(&self) -> Optimum {
+        let task = &self.input.task;
+        let layout = task.layout();
+        let f = isotonic(&task.y, &task.w, task.bounds);
+        let mut sizes: Vec<f64> = f.windows(2).map(|f| f[1] - f[0]).collect();
+        let mut held: Vec<bool> = sizes.iter().map(|d| *d == 0.0).collect();
+        sizes.resize(layout.len(), 0.0);
+        held.resize(layout.len(), false);
+        held[layout.low()] = f[0] <= task.bounds[0];
+        held[layout.high()] = f[layout.n] >= task.bounds[1];
+        let residual = task.residual(&f);
+        Optimum { first: f[0], sizes, held, residual, steps: 0, converged: true }
+    }
+
+    /// The trace of the derivative of the values in the data: degrees of freedom of what no constraint holds.
+    pub(super) fn freedom(&mut self, lambda: f64, optimum: &Optimum) -> f64 {
+        let task = &self.input.task;
+        let layout = task.layout();
+        let held = &optimum.held;
+        if lambda < NOTHING || self.input.rigid {
+            // One for every block, but for those at the bounds.
+            let rises = held[..layout.n].iter().filter(|held| !**held).count() as f64;
+            let at = |k: usize| f64::from(u8::from(held[k]));
+            return (rises + 1.0 - at(layout.low()) - at(layout.high())).max(0.0);
+        }
+        let lambda = lambda.min(LINE);
+        let model = |i: usize| {
+            if held[i] {
+                return Model::HELD;
+            }
+            let m = [optimum.sizes[layout.m(i)], optimum.sizes[layout.m(i + 1)]];
+            Model::new(lambda, m, optimum.sizes[i], task.h[i])
+        };
+        let models: Vec<Model> = (0..layout.n).map(model).collect();
+        let stiff: Vec<f64> = held.iter().map(|held| if *held { HELD } else { 0.0 }).collect();
+        let twice = task.twice();
+        self.system.factor(&task.h, &models, &twice, &stiff);
+        let variances = self.system.variances(&task.h, &models);
+        variances.iter().zip(&twice).map(|(v, w)| v * w).sum()
+    }
+
+    /// The scaled penalty of a decimal logarithm.
+    fn penalty(&self, k: f64) -> f64 {
+        self.unit * 10f64.powf(k)
+    }
+
+    /// The generalised cross-validation score, `(Σ w(y − f)²/n)/(1 − freedom/n)²`.
+    pub(super) fn score(&mut self, k: f64) -> Result<f64, MonotoneError> {
+        let lambda = self.penalty(k);
+        let optimum = self.at(lambda)?;
+        let n = self.input.count as f64;
+        let left = 1.0 - self.freedom(lambda, &optimum) / n;
+        let score = (optimum.residual + self.input.within) / n / (left * left);
+        Ok(if left > 1e-9 { score } else { f64::INFINITY })
+    }
+
+    /// The scaled penalty of the least score: the best power of ten, then a golden-section search around it.
+    pub(super) fn cross_validated(&mut self) -> Result<f64, MonotoneError> {
+        if self.input.rigid {
+            return Ok(0.0);
+        }
+        let least = -4.0 * (self.input.x.len() as f64).log10() - 4.0;
+        let mut best = (f64::INFINITY, f64::from(STRAIGHT));
+        let mut k = f64::from(STRAIGHT);
+        while k >= least {
+            let score = self.score(k)?;
+            if score < best.0 {
+                best = (score, k);
+            } else if score > 4.0 * best.0 {
+                break;
+            }
+            k -= 1.0;
+        }
+        let golden = 0.5 * (5f64.sqrt() - 1.0);
+        let (mut from, mut to) = (best.1 - 1.0, best.1 + 1.0);
+        let inside = |from: f64, to: f64| [to - golden * (to - from), from + golden * (to - from)];
+        let [mut a, mut b] = inside(from, to);
+        let (mut at_a, mut at_b) = (self.score(a)?, self.score(b)?);
+        while to - from > NARROW {
+            if at_a <= at_b {
+                (to, b, at_b) = (b, a, at_a);
+                a = inside(from, to)[0];
+                at_a = self.score(a)?;
+            } else {
+                (from, a, at_a) = (a, b, at_b);
+                b = inside(from, to)[1];
+                at_b = self.score(b)?;
+            }
+        }
+        let found = if at_a <= at_b { (at_a, a) } else { (at_b, b) };
+        // Where the score jumps (a constraint that becomes active) the search may end beside the better one.
+        let best = if found.0 <= best.0 { found } else { best };
+        Ok(self.penalty(best.1))
+    }
+
+    /// The scaled penalty whose optimum leaves this scaled residual, +∞ if a straight line leaves no more.
+    pub(super) fn of_residual(&mut self, residual: f64, given: f64) -> Result<f64, MonotoneError> {
+        let least = self.isotonic().residual + self.input.within;
+        if residual < least * (1.0 - 1e-12) {
+            let least = self.input.residual_out(least);
+            return Err(MonotoneError::Residual { value: given, least });
+        }
+        if residual <= least * (1.0 + 1e-12) || self.input.rigid {
+            return Ok(0.0);
+        }
+        if self.at(LINE)?.residual + self.input.within <= residual {
+            return Ok(f64::INFINITY);
+        }
+        let mut excess = |k: f64| -> Result<f64, MonotoneError> {
+            let found = self.at(self.penalty(k))?.residual;
+            // Logarithms: the residual is a power of the penalty over long stretches.
+            Ok(((found + self.input.within) / residual).ln())
+        };
+        let (mut from, mut to) = (-4.0, -4.0);
+        let start = excess(from)?;
+        let (mut low, mut high) = (start, start);
+        while low > 0.0 && from > -40.0 {
+            (to, high) = (from, low);
+            from -= 2.0;
+            low = excess(from)?;
+        }
+        while high < 0.0 && to < LINE.log10() {
+            (from, low) = (to, high);
+            to += 2.0;
+            high = excess(to)?;
+        }
+        let found = root(&mut excess, [from, to], [low, high])?;
+        Ok(self.penalty(found))
+    }
+}
+
+/// The root of an increasing function between two places by inverse interpolation, halving where that is slow
+/// (the Anderson–Björck form of the regula falsi).
+fn root(
+    excess: &mut impl FnMut(f64) -> Result<f64, MonotoneError>,
+    [mut from, mut to]: [f64; 2],
+    [mut low, mut high]: [f64; 2],
+) -> Result<f64, MonotoneError> {
+    if low >= 0.0 {
+        return Ok(from);
+    }
+    for _ in 0..EVALUATIONS {
+        let k = to - high * (to - from) / (high - low);
+        let value = excess(k)?;
+        if value.abs() <= NEAR || (to - from).abs() < 1e-13 {
+            return Ok(k);
+        }
+        let scale = |other: f64| {
+            let share = 1.0 - value / other;
+            if share > 0.0 { share } else { 0.5 }
+        };
+        if value > 0.0 {
+            low *= scale(high);
+            (to, high) = (k, value);
+        } else {
+            high *= scale(low);
+            (from, low) = (k, value);
+        }
+    }
+    Ok(to - high * (to - from) / (high - low))
+}
