@@ -366,7 +366,7 @@ def quartic(x: Array, y: Array) -> ss.MonotoneQuartic:
 
 def quintic(x: Array, y: Array) -> ss.MonotoneQuintic:
     """Return the paper's C² monotone quintic."""
-    return ss.MonotoneQuintic(x, y, slopes="fritsch-butland", fairness="parametric")
+    return ss.MonotoneQuintic(x, y, slopes="fritsch-butland", energy="parametric")
 
 
 @figure("003-7")

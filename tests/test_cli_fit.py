@@ -136,9 +136,11 @@ def test_options_of_functions(run, tmp_path):
     columns = polygons.load("rpn14")
     out = tmp_path / "o.csv"
     for arguments, f in (
-        (["--method=quintic", "--slopes=fritsch-butland", "--fairness=parametric"],
+        (["--method=quintic", "--slopes=fritsch-butland", "--energy=parametric"],
          ss.MonotoneQuintic(columns["x"], columns["y"], slopes="fritsch-butland",
-                            fairness="parametric")),
+                            energy="parametric")),
+        (["--method=cubic", "--ends=natural", "--layer=0", "--min-slope=0.1"],
+         ss.MonotoneCubic(columns["x"], columns["y"], ends="natural", layer=0, min_slope=0.1)),
         (["--method=quartic", "--shape=1"],
          ss.MonotoneQuartic(columns["x"], columns["y"], shape=1.0)),
     ):  # fmt: skip

@@ -70,7 +70,7 @@ import shapespline as ss
 
 ss.NuSpline([[0, 0], [1, 1]], boundary="loose")
 ss.NuSpline([[0, 0], [1, 1]]).tension = 3
-ss.MonotoneQuintic([0, 1], [0, 1], fairness="nice")
+ss.MonotoneQuintic([0, 1], [0, 1], energy="nice")
 ss.interchange.step(3, unit=7)
 """
 

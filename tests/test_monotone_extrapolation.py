@@ -164,9 +164,9 @@ def test_periodic_functions(rng):
 
 
 def test_attributes_of_derived_functions():
-    f = ss.MonotoneQuintic([0, 1, 2], [0, 1, 4], fairness="parametric")
-    assert f.fairness == "parametric"
-    assert ss.MonotoneQuintic([0, 1, 2], [0, 1, 4]).fairness == "bending"
+    f = ss.MonotoneQuintic([0, 1, 2], [0, 1, 4], energy="parametric")
+    assert f.energy == "parametric"
+    assert ss.MonotoneQuintic([0, 1, 2], [0, 1, 4]).energy == "bending"
     assert f.derivative().extrapolate == "clip"
     assert f.derivative(2).extrapolate == "zero"
     assert f.antiderivative().extrapolate == "taylor-2"
@@ -176,14 +176,14 @@ def test_attributes_of_derived_functions():
     assert f.antiderivative().extrapolate == ("periodic-1", True)
     for rows in (
         ss.fit_many_monotone(
-            [[0, 1, 2]], [[0, 1, 4]], kind="quintic", fairness="parametric", extrapolate=False
+            [[0, 1, 2]], [[0, 1, 4]], kind="quintic", energy="parametric", extrapolate=False
         ),
         ss.fit_many_monotone(
             [0, 1, 2], [0, 1, 4], kind="quartic", offsets=[0, 3], extrapolate=False
         ),
     ):
         assert rows.extrapolate is rows[0].extrapolate is False
-        assert rows.fairness == getattr(rows[0], "fairness", None)
+        assert rows.energy == getattr(rows[0], "energy", None)
 
 
 def test_attributes_of_rows(rng):

@@ -128,8 +128,8 @@ def test_bad_values(family, case):
 @pytest.mark.parametrize(
     ("call", "exception", "message"),
     [
-        (lambda: ss.MonotoneQuintic(X, Y, fairness="fair"), ValueError, "'bending', 'parametric'"),
-        (lambda: ss.MonotoneQuintic(X, Y, fairness=1), TypeError, "fairness must be a string"),
+        (lambda: ss.MonotoneQuintic(X, Y, energy="fair"), ValueError, "'bending', 'parametric'"),
+        (lambda: ss.MonotoneQuintic(X, Y, energy=1), TypeError, "energy must be a string"),
         (lambda: ss.MonotoneQuartic(X, Y, slopes="optimal"), ValueError, "'optimal'"),
         (lambda: ss.MonotoneQuartic(X, Y, shape=-1), ValueError, "-1"),
         (lambda: ss.MonotoneQuartic(X, Y, shape=np.ones(3)), ValueError, "pair"),

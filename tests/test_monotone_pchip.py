@@ -155,8 +155,8 @@ def test_options_of_the_other_kind_are_refused():
         ("quintic", "shape", 1.0),
         ("quintic", "shape", 3.0),
         ("quintic", "shape", ([1, 1], [1, 1])),
-        ("quartic", "fairness", "bending"),
-        ("quartic", "fairness", "parametric"),
+        ("quartic", "energy", "bending"),
+        ("quartic", "energy", "parametric"),
         ("quartic", "slopes", "optimal"),
         ("cubic", "slopes", "optimal"),
         ("cubic", "slopes", "fritsch-butland"),
@@ -169,7 +169,7 @@ def test_options_of_the_other_kind_are_refused():
             ss.fit_many_monotone(x, x, kind=kind, **{option: value})
         assert error.value.argument == option
     for kind, options in itertools.product(
-        ("cubic", "quartic", "quintic"), ({}, {"shape": None, "fairness": None, "slopes": None})
+        ("cubic", "quartic", "quintic"), ({}, {"shape": None, "energy": None, "slopes": None})
     ):
         np.testing.assert_array_equal(ss.fit_many_monotone(x, x, kind=kind, **options)(1.5), [1.5])
 

@@ -75,3 +75,32 @@ def test_extrapolation_goes_along(rng):
     close(f.to_bpoly()(out), f(out))
     close(f.to_ppoly()(out), f(out))
     close(f.to_ppoly().integrate(*out), f.integrate(*out))
+
+
+MAKERS = {
+    "cubic": ss.MonotoneCubic,
+    "cubic without layers": lambda x, y: ss.MonotoneCubic(x, y, layer=0, ends="natural"),
+    "quartic": ss.MonotoneQuartic,
+    "quintic": ss.MonotoneQuintic,
+    "derivative": lambda x, y: ss.MonotoneQuintic(x, y).derivative(3),
+}
+
+
+@pytest.mark.parametrize("maker", MAKERS)
+def test_bsplines_are_the_same_functions(rng, maker):
+    for case in range(50):
+        n = int(rng.integers(2, 10))
+        x = np.cumsum(rng.uniform(0.1, 1, n))
+        y = rng.integers(-3, 4, n) * 1.0 if case % 2 else np.cumsum(rng.lognormal(0, 2, n))
+        f = MAKERS[maker](x, y)
+        b, q = f.to_bspline(), np.linspace(x[0], x[-1], 200)[:-1]
+        np.testing.assert_allclose(b(q), f(q), rtol=0, atol=1e-10 * np.abs(f(q)).max())
+        if maker == "cubic":
+            assert len(b.t) == len(f.knots) + 6  # simple knots
+
+
+def test_bsplines_of_columns(rng):
+    x, y = np.arange(8.0), np.cumsum(rng.lognormal(0, 2, (3, 8)), 1)
+    f = ss.MonotoneCubic(x, y, 1)
+    q = np.linspace(0, 6.9, 100)
+    np.testing.assert_allclose(f.to_bspline()(q), f(q), rtol=1e-12)

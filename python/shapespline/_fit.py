@@ -45,7 +45,7 @@ _CURVE = ("parameters", "boundary", "closed", "repeated", "start_tangent", "end_
 #: Of the options of functions those that a command line can say.
 _FUNCTION_FLAGS = {
     "cubic": ("ends", "layer", "min_slope", "tolerance"),
-    "quintic": ("slopes", "fairness", "tolerance"),
+    "quintic": ("slopes", "energy", "tolerance"),
     "quartic": ("shape", "tolerance"),
 }
 

@@ -50,7 +50,7 @@ def fit_monotone(
     *,
     kind: Literal["quintic"],
     slopes: Literal["optimal", "fritsch-butland"] | ArrayLike | None = ...,
-    fairness: Literal["bending", "parametric"] | None = ...,
+    energy: Literal["bending", "parametric"] | None = ...,
     clip: bool | None = ...,
     extrapolate: _Extrapolate = ...,
 ) -> MonotoneQuintic: ...
@@ -75,7 +75,7 @@ def fit_monotone(
     ends: _Ends | None = None,
     layer: float | None = None,
     min_slope: float | None = None,
-    fairness: Literal["bending", "parametric"] | None = None,
+    energy: Literal["bending", "parametric"] | None = None,
     clip: bool | None = None,
     shape: float | tuple[ArrayLike, ArrayLike] | None = None,
     extrapolate: _Extrapolate = "linear",
@@ -97,7 +97,7 @@ def fit_monotone(
         As for the class.
     ends, layer, min_slope
         Kind ``"cubic"``: as for `MonotoneCubic`.
-    fairness, clip
+    energy, clip
         Kind ``"quintic"``: as for `MonotoneQuintic`.
     shape
         Kind ``"quartic"``: as for `MonotoneQuartic`.
@@ -139,7 +139,7 @@ def fit_monotone(
         "ends": ends,
         "layer": layer,
         "min_slope": min_slope,
-        "fairness": fairness,
+        "energy": energy,
         "clip": clip,
         "shape": shape,
     }

@@ -35,7 +35,7 @@ class Kind:
 KINDS: Mapping[str, Kind] = MappingProxyType(
     {
         "cubic": Kind(MonotoneCubic, ("slopes", "ends", "layer", "min_slope")),
-        "quintic": Kind(MonotoneQuintic, ("slopes", "fairness", "clip")),
+        "quintic": Kind(MonotoneQuintic, ("slopes", "energy", "clip")),
         "quartic": Kind(MonotoneQuartic, ("slopes", "shape")),
     }
 )

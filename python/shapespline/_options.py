@@ -219,7 +219,7 @@ def add_fit_options(parser: argparse.ArgumentParser, methods: Iterable[str]) -> 
     curve.add_argument(
         "--energy",
         choices=["parametric", "bending"],
-        help="fair: what is minimised (default: parametric)",
+        help="what is minimised (fair: default parametric; quintic: default bending)",
     )
     add_corners(curve, "fair: points at which there are corners", "none")
     curve.add_argument(
@@ -264,11 +264,6 @@ def add_fit_options(parser: argparse.ArgumentParser, methods: Iterable[str]) -> 
     )
     function.add_argument(
         "--slopes", choices=["optimal", "fritsch-butland"], help="quintic (default: optimal)"
-    )
-    function.add_argument(
-        "--fairness",
-        choices=["bending", "parametric"],
-        help="quintic: the energy that is least (default: bending)",
     )
     function.add_argument(
         "--shape", type=real, metavar="X", help="quartic: first value of α and β (default: 1)"

@@ -1,7 +1,8 @@
-//! Monotone interpolation of one variable: C¹ quartic and C² quintic Bézier-like splines, and the fairest of them.
+//! Monotone interpolation of one variable: the C² cubic of least bending energy, and Bézier-like splines.
 //!
 //! # Definition
 //! Data `(xᵢ, yᵢ)`, i = 0 … N, x increasing; spacing `hᵢ = xᵢ₊₁ − xᵢ`, secant `Δᵢ = (yᵢ₊₁ − yᵢ)/hᵢ`.
+//! - [`MonotoneCubic`]: C², of all monotone functions the one with the least `∫ f''² dx`.
 //! - [`MonotoneQuartic`]: C¹, local. On every segment the quartic Bézier-like curve (3) of the paper.
 //! - [`MonotoneQuintic`]: C², global. On every segment a quintic; slopes and second derivatives at the knots are
 //!   chosen so that a bending energy is least.
@@ -22,8 +23,8 @@
 //! *SIAM J. Sci. Stat. Comput.* 5 (1984) 300–304.
 //!
 //! ```
-//! use shapespline_monotone::{MonotoneQuintic, QuinticOptions};
-//! let f = MonotoneQuintic::new(&[0.0, 1.0, 2.0, 5.0], &[0.0, 0.1, 3.0, 3.2], &QuinticOptions::default())?;
+//! use shapespline_monotone::{CubicOptions, MonotoneCubic};
+//! let f = MonotoneCubic::new(&[0.0, 1.0, 2.0, 5.0], &[0.0, 0.1, 3.0, 3.2], &CubicOptions::default())?;
 //! assert_eq!(f.value(2.0), 3.0);
 //! let x = f.inverse(1.5)?;
 //! assert!((f.value(x) - 1.5).abs() < 1e-15);
@@ -36,6 +37,7 @@
 mod bernstein;
 mod beyond;
 pub mod bezier_like;
+mod bspline;
 mod calculus;
 mod cubic;
 mod data;
@@ -75,6 +77,7 @@ mod windows;
 struct ReadmeDoctests;
 
 pub use bezier_like::BezierLike;
+pub use bspline::BSpline;
 pub use cubic::{CubicOptions, Ends, MonotoneCubic, minimal_bending};
 pub use energy::Fairness;
 pub use error::MonotoneError;

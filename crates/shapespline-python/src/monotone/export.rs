@@ -6,7 +6,7 @@ use pyo3::{
     prelude::*,
     types::{IntoPyDict, PyDict},
 };
-use shapespline::monotone::Extrapolation;
+use shapespline::monotone::{BSpline, Extrapolation};
 
 use super::{fits::Fits, function::PiecewisePolynomial};
 use crate::output::{FloatArray, shaped};
@@ -97,5 +97,42 @@ impl PiecewisePolynomial {
         let class = py.import("scipy.interpolate")?.getattr("PPoly")?;
         let options = self.scipy_options(py)?;
         class.call_method("from_bernstein_basis", (self.to_bpoly(py)?,), Some(&options))
+    }
+
+    /// The function as a B-spline of SciPy.
+    ///
+    /// Returns
+    /// -------
+    /// scipy.interpolate.BSpline
+    ///     With the same ``axis``; of one cubic with simple knots (double ones where its second derivative
+    ///     jumps: without layers, and at given slopes), of quartics and quintics with triple ones. Outside
+    ///     the knots as `to_bpoly`.
+    ///
+    /// Raises
+    /// ------
+    /// ModuleNotFoundError
+    ///     If SciPy is not installed (``pip install "shapespline[scipy]"``).
+    ///
+    /// Examples
+    /// --------
+    /// >>> import shapespline as ss
+    /// >>> float(ss.MonotoneCubic([0, 1, 2], [0, 1, 2]).to_bspline()(1.5))
+    /// 1.5
+    fn to_bspline<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let class = py.import("scipy.interpolate")?.getattr("BSpline")?;
+        let mut all: Vec<BSpline> = self.fits.columns().map(|c| c.to_bspline()).collect();
+        if all.iter().any(|b| b.knots != all[0].knots) {
+            // Columns with knots of their own: pieces between the knots of all of them.
+            all = self.fits.refined().columns().map(|c| c.to_bspline()).collect();
+        }
+        let (knots, degree) = (all[0].knots.clone(), all[0].degree);
+        let n = all[0].coefficients.len();
+        let values: Vec<f64> = all.into_iter().flat_map(|b| b.coefficients).collect();
+        let values = self.layout.join(values, n);
+        let coefficients = shaped(py, values, &self.layout.shape(&[n]))?;
+        let options = self.scipy_options(py)?;
+        options.set_item("axis", self.layout.axis())?;
+        let count = knots.len();
+        class.call((shaped(py, knots, &[count])?, coefficients, degree), Some(&options))
     }
 }

@@ -246,7 +246,7 @@ impl MonotoneQuartic {
 ///     harmonic means, with the paper's program; or given ones (in the shape of ``y``, or (n,) for every
 ///     column). Those that a C² monotone quintic can have are taken as they are, up to nine times the
 ///     secant at one end of a segment or six times at both; others are refused.
-/// fairness : {"bending", "parametric"}
+/// energy : {"bending", "parametric"}
 ///     What is least: ``∫ f''² dx``, or the paper's sum (20) over the segments' own parameters.
 /// clip : bool
 ///     Limit given slopes that no C² monotone quintic has, instead of refusing them;
@@ -291,9 +291,9 @@ pub(crate) struct MonotoneQuintic;
 impl MonotoneQuintic {
     #[new]
     #[pyo3(
-        signature = (x, y, axis=0, *, slopes=SlopesOption::Optimal, fairness=Fairness::Bending,
+        signature = (x, y, axis=0, *, slopes=SlopesOption::Optimal, energy=Fairness::Bending,
                      clip=false, extrapolate=Some(Extrapolation::LINEAR)),
-        text_signature = "(x, y, axis=0, *, slopes='optimal', fairness='bending', \
+        text_signature = "(x, y, axis=0, *, slopes='optimal', energy='bending', \
                           clip=False, extrapolate='linear')"
     )]
     // One argument a keyword: this is the signature that users see.
@@ -303,14 +303,14 @@ impl MonotoneQuintic {
         y: &Bound<'_, PyAny>,
         #[pyo3(from_py_with = options::axis)] axis: isize,
         #[pyo3(from_py_with = options::slopes)] slopes: SlopesOption,
-        #[pyo3(from_py_with = options::fairness)] fairness: Fairness,
+        #[pyo3(from_py_with = options::energy)] energy: Fairness,
         clip: bool,
         #[pyo3(from_py_with = options::extrapolate)] extrapolate: Option<Extrapolation>,
     ) -> PyResult<PyClassInitializer<Self>> {
         let data = Data::of(x, y, axis)?;
         let extrapolate = extrapolate.unwrap_or_default();
         let fits = data.fit_slopes(x.py(), &slopes, |x, y, slopes, go_on| {
-            let options = QuinticOptions { slopes, fairness, clip, extrapolate };
+            let options = QuinticOptions { slopes, fairness: energy, clip, extrapolate };
             shapespline::monotone::MonotoneQuintic::new_with(x, y, &options, go_on)
         })?;
         Ok(object(Fits::Quintic(fits), data.layout, Self))
@@ -332,7 +332,7 @@ impl MonotoneQuintic {
 
     /// What was least: ``"bending"`` or ``"parametric"``.
     #[getter]
-    fn fairness(slf: &Bound<'_, Self>) -> &'static str {
-        options::fairness_name(slf.as_super().as_super().get().fits.fairness().unwrap_or_default())
+    fn energy(slf: &Bound<'_, Self>) -> &'static str {
+        options::energy_name(slf.as_super().as_super().get().fits.fairness().unwrap_or_default())
     }
 }

@@ -6,8 +6,8 @@ use pyo3::{exceptions::PyKeyboardInterrupt, prelude::*};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use shapespline::monotone::{
-    Extrapolation, Fairness, MonotoneCubic, MonotoneError, MonotoneQuartic, MonotoneQuintic,
-    MonotoneSpline, PiecewisePolynomial,
+    BSpline, Extrapolation, Fairness, MonotoneCubic, MonotoneError, MonotoneQuartic,
+    MonotoneQuintic, MonotoneSpline, PiecewisePolynomial,
 };
 
 use crate::{
@@ -70,6 +70,9 @@ impl Column<'_> {
             Self::Spline(f) => f.to_piecewise().refined(knots),
             Self::Pieces(f) => f.refined(knots),
         }
+    }
+    pub(crate) fn to_bspline(&self) -> BSpline {
+        both!(self, f => f.to_bspline())
     }
     #[inline]
     pub(crate) fn evaluate(&self, x: f64, nu: usize, mode: Option<Extrapolation>) -> f64 {

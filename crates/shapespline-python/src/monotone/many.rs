@@ -93,8 +93,8 @@ fn slopes(object: &Bound<'_, PyAny>) -> PyResult<Option<SlopesOption>> {
     optional(object, options::slopes)
 }
 
-fn fairness(object: &Bound<'_, PyAny>) -> PyResult<Option<Fairness>> {
-    optional(object, options::fairness)
+fn energy(object: &Bound<'_, PyAny>) -> PyResult<Option<Fairness>> {
+    optional(object, options::energy)
 }
 
 fn shape(object: &Bound<'_, PyAny>) -> PyResult<Option<Shape>> {
@@ -128,7 +128,7 @@ fn min_slope(object: &Bound<'_, PyAny>) -> PyResult<Option<f64>> {
 ///     two axes, slopes of shape (n,) are for every row. The cubic takes numbers alone, NaN where free.
 /// ends, layer, min_slope
 ///     For the cubic alone, as for `MonotoneCubic`; None is its own default.
-/// fairness : {"bending", "parametric"}, optional
+/// energy : {"bending", "parametric"}, optional
 ///     For the quintic alone; None is "bending".
 /// clip : bool
 ///     For the quintic alone: limit given slopes that no monotone function has, instead of refusing them.
@@ -160,10 +160,10 @@ fn min_slope(object: &Bound<'_, PyAny>) -> PyResult<Option<f64>> {
 #[pyfunction]
 #[pyo3(
     signature = (x, y, *, kind=Kind::Cubic, offsets=None, slopes=None, ends=None, layer=None,
-                 min_slope=None, fairness=None, clip=false, shape=None,
+                 min_slope=None, energy=None, clip=false, shape=None,
                  extrapolate=Some(Extrapolation::LINEAR)),
     text_signature = "(x, y, *, kind='cubic', offsets=None, slopes=None, ends=None, layer=None, \
-                      min_slope=None, fairness=None, clip=False, shape=None, \
+                      min_slope=None, energy=None, clip=False, shape=None, \
                       extrapolate='linear')"
 )]
 // One argument per keyword: this is the signature that users see.
@@ -178,7 +178,7 @@ pub(crate) fn fit_many_monotone(
     #[pyo3(from_py_with = ends)] ends: Option<Ends>,
     #[pyo3(from_py_with = layer)] layer: Option<f64>,
     #[pyo3(from_py_with = min_slope)] min_slope: Option<f64>,
-    #[pyo3(from_py_with = fairness)] fairness: Option<Fairness>,
+    #[pyo3(from_py_with = energy)] energy: Option<Fairness>,
     clip: bool,
     #[pyo3(from_py_with = shape)] shape: Option<Shape>,
     #[pyo3(from_py_with = options::extrapolate)] extrapolate: Option<Extrapolation>,
@@ -190,7 +190,7 @@ pub(crate) fn fit_many_monotone(
     kind.allows("ends", "ends", ends.is_some(), cubic)?;
     kind.allows("layer", "layer", layer.is_some(), cubic)?;
     kind.allows("min_slope", "min_slope", min_slope.is_some(), cubic)?;
-    kind.allows("fairness", "fairness", fairness.is_some(), quintic)?;
+    kind.allows("energy", "energy", energy.is_some(), quintic)?;
     kind.allows("clip", "clip=True", clip, quintic)?;
     kind.allows("shape", "shape", shape.is_some(), &[Kind::Quartic])?;
     let optimal = matches!(slopes, Some(SlopesOption::Optimal));
@@ -226,7 +226,7 @@ pub(crate) fn fit_many_monotone(
             monotone::MonotoneCubic::new_with(&x[from..to], &y[from..to], &options, go_on)
         })?),
         Kind::Quintic => Fits::Quintic(fit_rows(py, &bounds, |from, to, go_on| {
-            let fairness = fairness.unwrap_or_default();
+            let fairness = energy.unwrap_or_default();
             let options = QuinticOptions { slopes: of(from, to), fairness, clip, extrapolate };
             monotone::MonotoneQuintic::new_with(&x[from..to], &y[from..to], &options, go_on)
         })?),

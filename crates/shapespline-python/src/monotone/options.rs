@@ -107,16 +107,16 @@ pub(crate) fn extrapolation_name(
     if below == above { name(below) } else { (name(below)?, name(above)?).into_bound_py_any(py) }
 }
 
-pub(crate) fn fairness(object: &Bound<'_, PyAny>) -> PyResult<Fairness> {
+pub(crate) fn energy(object: &Bound<'_, PyAny>) -> PyResult<Fairness> {
     let name = text(object).ok_or_else(|| {
-        PyTypeError::new_err(format!("fairness must be a string, got {}", kind(object)))
+        PyTypeError::new_err(format!("energy must be a string, got {}", kind(object)))
     })?;
     let energies = [("bending", Fairness::Bending), ("parametric", Fairness::Parametric)];
-    choose("fairness", &name, &energies)
+    choose("energy", &name, &energies)
 }
 
-pub(crate) fn fairness_name(fairness: Fairness) -> &'static str {
-    match fairness {
+pub(crate) fn energy_name(energy: Fairness) -> &'static str {
+    match energy {
         Fairness::Bending => "bending",
         Fairness::Parametric => "parametric",
     }

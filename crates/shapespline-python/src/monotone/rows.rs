@@ -277,8 +277,8 @@ impl MonotoneRows {
 
     /// What the quintics minimise: ``"bending"`` or ``"parametric"``; None of quartics.
     #[getter]
-    fn fairness(slf: &Bound<'_, Self>) -> Option<&'static str> {
-        slf.as_super().get().fits.fairness().map(options::fairness_name)
+    fn energy(slf: &Bound<'_, Self>) -> Option<&'static str> {
+        slf.as_super().get().fits.fairness().map(options::energy_name)
     }
 
     /// The inverse functions: in every row the x with f(x) = y.
