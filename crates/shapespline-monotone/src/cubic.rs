@@ -9,18 +9,25 @@ use crate::quintic::{Diagnostics, Solver};
 use crate::spline::MonotoneSpline;
 use std::ops::{ControlFlow, Deref};
 
+mod bent;
+mod convex;
 mod ends;
 mod layer;
 mod piece;
 mod pieces;
 mod problem;
+mod profile;
+mod ramp;
 mod stretch;
 #[cfg(test)]
 mod tests;
 
+use convex::Asked;
+pub use convex::Convexity;
 pub use ends::Ends;
 pub(crate) use pieces::Pieces;
 use problem::{Layers, Problem};
+use profile::Profiles;
 
 /// How a [`MonotoneCubic`] is made.
 #[derive(Debug, Clone, PartialEq)]
@@ -30,11 +37,14 @@ pub struct CubicOptions {
     /// Slopes at the points, one per point; NaN where they are free.
     pub slopes: Option<Vec<f64>>,
     /// The share of an interval beside a turn or a flat in which the second derivative falls to its value there, from 0
-    /// to 1/4. With 0 the least energy itself, which is C¹ at turns and flats; with more it is C² everywhere.
+    /// to 1/4. With 0 the least energy itself, which is C¹ at turns and flats; with more it is C² everywhere. With
+    /// `convex` also beside points where a convex interval meets another, and three eighths of it.
     pub layer: f64,
     /// The share of the smallest secant of an interval and its neighbours below which the slope never falls there where
     /// the data are strictly monotone, from 0 to less than 1.
     pub min_slope: f64,
+    /// Where the function is to be convex or concave as well as monotone; None: nowhere in particular.
+    pub convex: Option<Convexity>,
     /// What it is outside the data. [`Extrapolation::PERIODIC`] with [`Ends::Periodic`] repeats the function up to the
     /// rise over a period.
     pub extrapolate: Extrapolation,
@@ -47,6 +57,7 @@ impl Default for CubicOptions {
             slopes: None,
             layer: 1.0 / 16.0,
             min_slope: 0.0,
+            convex: None,
             extrapolate: Extrapolation::default(),
         }
     }
@@ -111,9 +122,12 @@ impl MonotoneCubic {
         let data = Data::new(x, y)?;
         ask(go_on)?;
         data.check_curvature(y)?;
-        let (problem, first) = problem(&data, options)?;
+        let (mut problem, first) = problem(&data, options)?;
+        let asked = |convex| Asked::new(convex, &mut problem, data.len(), options, first);
+        let asked = options.convex.as_ref().map(asked).transpose()?;
         let extrapolate = extrapolation(options, x, y);
-        Self::solved(&problem, first, [x, y], data.units(), options.layer, extrapolate, go_on)
+        let task = Task { problem, first, asked, units: data.units(), layer: options.layer };
+        task.solved([x, y], extrapolate, go_on)
     }
 
     /// The least-energy function through increasing (`sign` 1) or decreasing (−1) `y` whose rises are known to more
@@ -137,46 +151,8 @@ impl MonotoneCubic {
         for i in 0..x.len() {
             problem.held[i] = problem.is_level(i);
         }
-        Self::solved(&problem, 0, [x, y], data.units(), 0.0, extrapolate, go_on)
-    }
-
-    fn solved(
-        problem: &Problem,
-        first: usize,
-        [x, y]: [&[f64]; 2],
-        units: Units,
-        layer: f64,
-        extrapolate: Extrapolation,
-        go_on: GoOn<'_>,
-    ) -> Result<Self, MonotoneError> {
-        let found = problem.solve(None, go_on)?;
-        let own = first..first + x.len() - 1;
-        let (energies, gaps) = problem.certificate(&found.m);
-        let sum = |values: &[f64]| values[own.clone()].iter().sum::<f64>();
-        let (least, gap) = (sum(&energies), sum(&gaps));
-        let Layered { m, layers, solves, converged } = layered(problem, found.m, layer, go_on)?;
-        let (pieces, energy) = Pieces::new(problem, units, [x, y], &m, layers.as_ref(), first);
-        ask(go_on)?;
-        let out = |energy: f64| units.energy_out(Fairness::Bending, energy);
-        let diagnostics = Diagnostics {
-            solver: Solver::Newton,
-            iterations: found.solves + solves,
-            active: pieces.level.len(),
-            kkt_residual: if gap > 0.0 { gap / least } else { 0.0 },
-            converged: found.converged && converged,
-            certified: true,
-            energy: out(energy),
-            limited: Vec::new(),
-        };
-        let gaps = gaps[own].iter().map(|gap| out(*gap)).collect();
-        let (level, lower_bound) = (pieces.level.clone(), out((least - gap).max(0.0)));
-        let spline = MonotoneSpline::cubic(units, [x, y], pieces, extrapolate);
-        // A second derivative beyond double precision: refuse rather than hand out infinities.
-        if let Some(i) = spline.overflow() {
-            let i = spline.segment_of_knot(i);
-            return Err(out_of_range("second derivative", "y", i, y[i]));
-        }
-        Ok(Self { spline, diagnostics, level, lower_bound, gaps })
+        let task = Task { problem, first: 0, asked: None, units: data.units(), layer: 0.0 };
+        task.solved([x, y], extrapolate, go_on)
     }
 
     /// How the fit went.
@@ -252,9 +228,96 @@ fn problem(data: &Data, options: &CubicOptions) -> Result<(Problem, usize), Mono
     Ok((problem, first))
 }
 
+/// What a fit solves.
+struct Task {
+    problem: Problem,
+    /// The problem's interval of the data's first.
+    first: usize,
+    asked: Option<Asked>,
+    units: Units,
+    layer: f64,
+}
+
+impl Task {
+    fn solved(
+        mut self,
+        [x, y]: [&[f64]; 2],
+        extrapolate: Extrapolation,
+        go_on: GoOn<'_>,
+    ) -> Result<MonotoneCubic, MonotoneError> {
+        let Self { problem, first, units, .. } = &self;
+        let (first, units) = (*first, *units);
+        let found = problem.solve(None, go_on)?;
+        let own = first..first + x.len() - 1;
+        let (energies, gaps) = problem.certificate(&found.m);
+        let sum = |values: &[f64]| values[own.clone()].iter().sum::<f64>();
+        let (least, gap) = (sum(&energies), sum(&gaps));
+        let Made { pieces, energy, solves, converged } = match &self.asked.take() {
+            Some(asked) => self.bent(asked, [x, y], go_on)?,
+            None => self.monotone([x, y], found.m, go_on)?,
+        };
+        ask(go_on)?;
+        let out = |energy: f64| units.energy_out(Fairness::Bending, energy);
+        let diagnostics = Diagnostics {
+            solver: Solver::Newton,
+            iterations: found.solves + solves,
+            active: pieces.level.len(),
+            kkt_residual: if gap > 0.0 { gap / least } else { 0.0 },
+            converged: found.converged && converged,
+            certified: true,
+            energy: out(energy),
+            limited: Vec::new(),
+        };
+        let gaps = gaps[own].iter().map(|gap| out(*gap)).collect();
+        let (level, lower_bound) = (pieces.level.clone(), out((least - gap).max(0.0)));
+        let spline = MonotoneSpline::cubic(units, [x, y], pieces, extrapolate);
+        // A second derivative beyond double precision: refuse rather than hand out infinities.
+        if let Some(i) = spline.overflow() {
+            let i = spline.segment_of_knot(i);
+            return Err(out_of_range("second derivative", "y", i, y[i]));
+        }
+        Ok(MonotoneCubic { spline, diagnostics, level, lower_bound, gaps })
+    }
+
+    /// Pieces of least energy with slopes m, and layers.
+    fn monotone(
+        &self,
+        data: [&[f64]; 2],
+        m: Vec<f64>,
+        go_on: GoOn<'_>,
+    ) -> Result<Made, MonotoneError> {
+        let Self { problem, first, units, layer, .. } = self;
+        let Layered { m, layers, solves, converged } = layered(problem, m, *layer, go_on)?;
+        let (pieces, energy) = Pieces::new(problem, *units, data, &m, layers.as_ref(), *first);
+        Ok(Made { pieces, energy, solves, converged })
+    }
+
+    /// Pieces that are convex and concave where that is asked.
+    fn bent(
+        &mut self,
+        asked: &Asked,
+        data: [&[f64]; 2],
+        go_on: GoOn<'_>,
+    ) -> Result<Made, MonotoneError> {
+        let straight = asked.impose(&mut self.problem);
+        let Self { problem, first, units, layer, .. } = self;
+        let found = problem.solve(None, go_on)?;
+        let profiles = Profiles::new(problem, &found, &asked.signs, straight, *layer);
+        let (pieces, energy) = Pieces::bent(problem, *units, data, &found, &profiles, *first);
+        Ok(Made { pieces, energy, solves: found.solves, converged: found.converged })
+    }
+}
+
 struct Layered {
     m: Vec<f64>,
     layers: Option<Layers>,
+    solves: usize,
+    converged: bool,
+}
+
+struct Made {
+    pieces: Pieces,
+    energy: f64,
     solves: usize,
     converged: bool,
 }

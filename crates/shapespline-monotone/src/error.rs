@@ -120,6 +120,16 @@ pub enum MonotoneError {
         /// Distinct values.
         found: usize,
     },
+    /// A sign of `convex` that is none, or that no function through the data has.
+    #[error("convex[{index}] is {value}, {rule}")]
+    Convex {
+        /// The interval.
+        index: usize,
+        /// The sign.
+        value: i8,
+        /// What it breaks, and what helps.
+        rule: &'static str,
+    },
     /// A share of an interval or a secant that is out of its range.
     #[error("{argument} must lie in {range}, got {value}")]
     Share {

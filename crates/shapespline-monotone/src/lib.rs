@@ -78,7 +78,7 @@ struct ReadmeDoctests;
 
 pub use bezier_like::BezierLike;
 pub use bspline::BSpline;
-pub use cubic::{CubicOptions, Ends, MonotoneCubic, minimal_bending};
+pub use cubic::{Convexity, CubicOptions, Ends, MonotoneCubic, minimal_bending};
 pub use energy::Fairness;
 pub use error::MonotoneError;
 pub use extrapolation::{Continuation, Extrapolation};

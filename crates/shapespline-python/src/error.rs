@@ -241,6 +241,9 @@ impl From<&MonotoneError> for Refused {
             MonotoneError::HeldSlope { argument, index, value, .. } => {
                 Self::new(argument, [index], value)
             }
+            MonotoneError::Convex { index, value, .. } => {
+                Self::new("convex", [index], i64::from(value))
+            }
             MonotoneError::Share { argument, value, .. } => Self::new(argument, [], value),
             MonotoneError::NotIncreasing { index, value, .. } => Self::new("x", [index], value),
             MonotoneError::TooFew { argument, found, .. }

@@ -2,7 +2,8 @@
 
 use super::layer::between;
 use super::piece::Level;
-use super::problem::{Layers, Problem};
+use super::problem::{Layers, Problem, Slopes};
+use super::profile::{Profile, Profiles};
 use crate::data::{Units, parts};
 
 /// Pieces over the knots, as [`crate::MonotoneSpline`] takes them: slopes and second derivatives are signed and scaled.
@@ -144,21 +145,57 @@ impl Pieces {
         layers: Option<&Layers>,
         first: usize,
     ) -> (Self, f64) {
+        Self::of(
+            [x, y],
+            |own, i| {
+                let k = first + i;
+                let interval = Interval::new(problem, k, m, layers);
+                own.push(&interval, units, problem.sign[k], [x[i], x[i + 1]], [y[i], y[i + 1]]);
+                (interval.energy(problem.h[k]), interval.level)
+            },
+            |i| signed_slope(problem, first + i, m),
+        )
+    }
+
+    /// The same of intervals of which convexity is asked.
+    pub(crate) fn bent(
+        problem: &Problem,
+        units: Units,
+        [x, y]: [&[f64]; 2],
+        found: &Slopes,
+        profiles: &Profiles,
+        first: usize,
+    ) -> (Self, f64) {
+        Self::of(
+            [x, y],
+            |own, i| {
+                let k = first + i;
+                let profile = profiles.of(problem, k, found);
+                own.push_bent(&profile, units, problem.sign[k], [x[i], x[i + 1]], [y[i], y[i + 1]]);
+                (profile.energy, profile.level)
+            },
+            |i| signed_slope(problem, first + i, &found.m),
+        )
+    }
+
+    /// Interval by interval: `push` appends one and says its energy and whether it is level somewhere.
+    fn of(
+        [x, y]: [&[f64]; 2],
+        push: impl Fn(&mut Self, usize) -> (f64, bool) + Sync,
+        slope: impl Fn(usize) -> f64 + Sync,
+    ) -> (Self, f64) {
         let n = x.len() - 1;
         let made = parts(n, |part| {
             let mut own = Self::default();
             let mut energy = 0.0;
             for i in part {
-                let k = first + i;
-                let interval = Interval::new(problem, k, m, layers);
-                energy += interval.energy(problem.h[k]);
-                if interval.level {
+                let (part, level) = push(&mut own, i);
+                energy += part;
+                if level {
                     own.level.push(i);
                 }
-                own.push(&interval, units, problem.sign[k], [x[i], x[i + 1]], [y[i], y[i + 1]]);
-                // The slope at the point before is known here.
                 let at = own.nodes[own.nodes.len() - 1];
-                own.slope[at] = signed_slope(problem, k, m);
+                own.slope[at] = slope(i);
             }
             (own, energy)
         });
@@ -177,8 +214,40 @@ impl Pieces {
         all.nodes.push(all.x.len());
         all.x.push(x[n]);
         all.y.push(y[n]);
-        all.slope.push(signed_slope(problem, first + n, m));
+        all.slope.push(slope(n));
         (all, energy)
+    }
+
+    /// Where a knot at a distance from one of the ends x of an interval goes: a part shorter than an ulp becomes one of an
+    /// ulp; where there is no room it is left out.
+    fn place(&self, width: f64, from_right: bool, x: [f64; 2]) -> Option<f64> {
+        let knot = if from_right { x[1] - width } else { x[0] + width };
+        let before = self.x[self.x.len() - 1];
+        // Beside 0 an ulp is that of the interval's width.
+        let least = f64::EPSILON * (x[1] - x[0]);
+        let knot = if knot <= before { before.next_up().max(before + least) } else { knot };
+        let knot = if knot >= x[1] { x[1].next_down().min(x[1] - least) } else { knot };
+        (knot > before).then_some(knot)
+    }
+
+    /// The point before an interval and the knots of its second derivative where that is to be convex or concave.
+    fn push_bent(&mut self, profile: &Profile, units: Units, sign: f64, x: [f64; 2], y: [f64; 2]) {
+        self.nodes.push(self.x.len());
+        self.x.push(x[0]);
+        self.y.push(y[0]);
+        self.slope.push(0.0);
+        let mut second = profile.ends[0];
+        for knot in profile.knots() {
+            let width = units.x().scale(knot.width);
+            let Some(place) = self.place(width, knot.from_right, x) else { continue };
+            let share = (y[1] - y[0]) * knot.rise.clamp(0.0, 1.0);
+            self.second.push([sign * second, sign * knot.second]);
+            self.x.push(place);
+            self.y.push(if knot.from_right { y[1] - share } else { y[0] + share });
+            self.slope.push(sign * knot.slope);
+            second = knot.second;
+        }
+        self.second.push([sign * second, sign * profile.ends[1]]);
     }
 
     /// The point before an interval and the inner knots.
@@ -194,14 +263,7 @@ impl Pieces {
             }
             let width = units.x().scale(interval.width[k]);
             let from_right = if interval.knots == 1 { interval.right } else { k == 1 };
-            let knot = if from_right { x[1] - width } else { x[0] + width };
-            // A parabola shorter than an ulp becomes one of an ulp; where there is no room it is left out.
-            let before = self.x[self.x.len() - 1];
-            let knot = if knot <= before { before.next_up() } else { knot };
-            let knot = if knot >= x[1] { x[1].next_down() } else { knot };
-            if knot <= before {
-                continue;
-            }
+            let Some(knot) = self.place(width, from_right, x) else { continue };
             let rise = interval.rise[k].clamp(0.0, 1.0);
             // From the nearer value, so that small rises keep their digits.
             let value = if rise <= 0.5 {

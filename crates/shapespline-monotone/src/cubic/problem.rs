@@ -24,15 +24,25 @@ pub(crate) struct Problem {
     pub(crate) sign: Vec<f64>,
     /// The least slope of every interval; empty: 0.
     pub(crate) floor: Vec<f64>,
+    /// What is asked of every interval, in the direction of its data; empty: nothing.
+    pub(crate) bend: Vec<Bend>,
     /// Nodes whose slope is not free.
     pub(crate) held: Vec<bool>,
     /// Slopes of the held nodes.
     pub(crate) slope: Vec<f64>,
 }
 
+/// 1 for an interval on which the function is to be convex in the direction of its data, −1 for concave, 0 for neither.
+pub(crate) type Bend = i8;
+
+/// Slopes of some nodes, and the same as [`Slopes::fine`].
+type Part = (Vec<f64>, Vec<[f64; 2]>);
+
 /// Slopes of least energy.
 pub(crate) struct Slopes {
     pub(crate) m: Vec<f64>,
+    /// Where convexity is asked, every slope as a sum of which the first part is a secant that bounds it, if one does.
+    pub(crate) fine: Vec<[f64; 2]>,
     /// Linear solves of the stretch that took most.
     pub(crate) solves: usize,
     pub(crate) converged: bool,
@@ -58,7 +68,15 @@ impl Problem {
         for i in 1..n {
             held[i] = sign[i - 1] * sign[i] <= 0.0;
         }
-        Self { h: data.h.clone(), d, sign, floor: Vec::new(), held, slope: vec![0.0; n + 1] }
+        Self {
+            h: data.h.clone(),
+            d,
+            sign,
+            floor: Vec::new(),
+            bend: Vec::new(),
+            held,
+            slope: vec![0.0; n + 1],
+        }
     }
 
     /// Whether node i is a turn or the end of a flat.
@@ -98,19 +116,21 @@ impl Problem {
         let nodes = self.held.len();
         let count = (nodes / PART).max(1);
         let cut = |k: usize| nodes * k / count;
-        let part = |room: &mut Room, k: usize| -> Result<(Vec<f64>, Steps), MonotoneError> {
+        let part = |room: &mut Room, k: usize| -> Result<(Part, Steps), MonotoneError> {
             ask(go_on)?;
             Ok(self.part(cut(k)..cut(k + 1), layers, room))
         };
         if count == 1 {
-            let (m, steps) = part(&mut Room::default(), 0)?;
-            return Ok(Slopes { m, solves: steps.solves, converged: steps.converged });
+            let ((m, fine), steps) = part(&mut Room::default(), 0)?;
+            return Ok(Slopes { m, fine, solves: steps.solves, converged: steps.converged });
         }
         let parts: Vec<_> = (0..count).into_par_iter().map_init(Room::default, part).collect();
-        let mut all = Slopes { m: Vec::with_capacity(nodes), solves: 0, converged: true };
+        let (m, fine) = (Vec::with_capacity(nodes), Vec::new());
+        let mut all = Slopes { m, fine, solves: 0, converged: true };
         for part in parts {
-            let (m, steps) = part?;
+            let ((m, fine), steps) = part?;
             all.m.extend_from_slice(&m);
+            all.fine.extend_from_slice(&fine);
             all.solves = all.solves.max(steps.solves);
             all.converged &= steps.converged;
         }
@@ -123,7 +143,7 @@ impl Problem {
         own: Range<usize>,
         layers: Option<(&Layers, &[f64])>,
         room: &mut Room,
-    ) -> (Vec<f64>, Steps) {
+    ) -> (Part, Steps) {
         let last = self.held.len() - 1;
         // What lies beyond a held node has no influence.
         let mut from = own.start;
@@ -138,7 +158,9 @@ impl Problem {
             Some((_, near)) => near[from..=to].to_vec(),
             None => self.slope[from..=to].to_vec(),
         };
-        let mut all = Steps { solves: 0, converged: true };
+        let bent = !self.bend.is_empty();
+        let mut fine: Vec<_> = m.iter().filter(|_| bent).map(|m| [*m, 0.0]).collect();
+        let mut all = Steps::default();
         let mut start = from;
         while start < to {
             let mut end = start + 1;
@@ -150,6 +172,7 @@ impl Problem {
                     start..end,
                     layers.map(|l| l.0),
                     &mut m[start - from..=end - from],
+                    if bent { &mut fine[start - from..=end - from] } else { &mut [] },
                     room,
                 );
                 all.solves = all.solves.max(steps.solves);
@@ -159,7 +182,11 @@ impl Problem {
         }
         m.truncate(own.end - from);
         m.drain(..own.start - from);
-        (m, all)
+        if bent {
+            fine.truncate(own.end - from);
+            fine.drain(..own.start - from);
+        }
+        ((m, fine), all)
     }
 
     /// The slopes of a stretch of intervals.
@@ -168,17 +195,28 @@ impl Problem {
         intervals: Range<usize>,
         layers: Option<&Layers>,
         m: &mut [f64],
+        fine: &mut [[f64; 2]],
         room: &mut Room,
     ) -> Steps {
         let ends = [intervals.start, intervals.end];
         let layer = ends.map(|i| layers.and_then(|layers| self.layer(layers, i)));
         if layers.is_some() && layer.iter().all(Option::is_none) {
-            return Steps { solves: 0, converged: true };
+            return Steps::default();
         }
         let floor = if self.floor.is_empty() { &[][..] } else { &self.floor[intervals.clone()] };
+        let bend = if self.bend.is_empty() { &[][..] } else { &self.bend[intervals.clone()] };
         let (h, d) = (&self.h[intervals.clone()], &self.d[intervals]);
-        let stretch = Stretch { h, d, floor, held: ends.map(|i| self.held[i]), layer };
-        stretch.minimise(m, layers.is_some(), room)
+        let mut stretch = Stretch {
+            h,
+            d,
+            floor,
+            bend,
+            held: ends.map(|i| self.held[i]),
+            layer,
+            base: Vec::new(),
+            opened: Vec::new(),
+        };
+        stretch.minimise(m, fine, layers.is_some(), room)
     }
 
     /// The layer beside node i, if its slope is 0.

@@ -5,6 +5,7 @@
 //! diagonal has a condition of at most 4 whatever the spacing: the influence of a node falls by a third at least from
 //! node to node.
 
+use super::bent::Barrier;
 use super::layer::Layer;
 use super::piece::Piece;
 use std::ops::Range;
@@ -35,20 +36,28 @@ pub(crate) struct Stretch<'a> {
     pub(crate) d: &'a [f64],
     /// The least slope of every interval; empty: 0.
     pub(crate) floor: &'a [f64],
+    /// 1 for intervals on which the function is to be convex, −1 for concave, 0 for others; empty: 0.
+    pub(crate) bend: &'a [i8],
     /// Whether the slopes at the two ends are held.
     pub(crate) held: [bool; 2],
     /// Layers beside ends of slope 0.
     pub(crate) layer: [Option<Layer>; 2],
+    /// What slopes are measured from in Newton's method; empty: 0.
+    pub(super) base: Vec<f64>,
+    /// Intervals that are not straight although their arms are small; empty: none.
+    pub(super) opened: Vec<bool>,
 }
 
 /// Sizes of quantities at a point in the space of slopes.
 #[derive(Default)]
-struct Model {
-    energy: Vec<f64>,
+pub(super) struct Model {
+    pub(super) energy: Vec<f64>,
     gradient: Vec<f64>,
-    diagonal: Vec<f64>,
+    pub(super) diagonal: Vec<f64>,
     off_diagonal: Vec<f64>,
     singular: Vec<f64>,
+    /// The same of convex and concave intervals, whose slopes are bounded by secants: before and after every node.
+    barrier: Vec<Barrier>,
 }
 
 /// Memory that stretches use one after another.
@@ -68,18 +77,24 @@ pub(crate) struct Steps {
     pub(crate) converged: bool,
 }
 
-impl Stretch<'_> {
+impl Default for Steps {
+    fn default() -> Self {
+        Self { solves: 0, converged: true }
+    }
+}
+
+impl<'a> Stretch<'a> {
     fn nodes(&self) -> usize {
         self.h.len() + 1
     }
 
-    fn is_held(&self, i: usize) -> bool {
+    pub(super) fn is_held(&self, i: usize) -> bool {
         (i == 0 && self.held[0]) || (i == self.h.len() && self.held[1])
     }
 
     /// The least slope at node i: the larger of its two intervals'.
     #[inline(always)]
-    fn bound(&self, i: usize) -> f64 {
+    pub(super) fn bound(&self, i: usize) -> f64 {
         if self.floor.is_empty() {
             return 0.0;
         }
@@ -90,7 +105,7 @@ impl Stretch<'_> {
 
     /// The smaller secant beside node i: the unit of its slope.
     #[inline(always)]
-    fn unit(&self, i: usize) -> f64 {
+    pub(super) fn unit(&self, i: usize) -> f64 {
         let before = if i > 0 { self.d[i - 1] / self.h[i - 1] } else { f64::INFINITY };
         let after = if i < self.h.len() { self.d[i] / self.h[i] } else { f64::INFINITY };
         before.min(after)
@@ -98,7 +113,7 @@ impl Stretch<'_> {
 
     /// Interval i with end slopes m.
     #[inline(always)]
-    fn piece(&self, i: usize, m: [f64; 2]) -> Piece {
+    pub(super) fn piece(&self, i: usize, m: [f64; 2]) -> Piece {
         if i == 0
             && let Some(layer) = &self.layer[0]
         {
@@ -109,6 +124,12 @@ impl Stretch<'_> {
         {
             return layer.piece(true, m, self.d[i], self.h[i]);
         }
+        if let Some(&bend) = self.bend.get(i)
+            && bend != 0
+        {
+            return self.ramp(i, bend, m).piece();
+        }
+        let m = [self.base(i) + m[0], self.base(i + 1) + m[1]];
         if self.floor.is_empty() {
             return Piece::new(m, [m[0].sqrt(), m[1].sqrt()], self.d[i], self.h[i]);
         }
@@ -118,16 +139,25 @@ impl Stretch<'_> {
     }
 
     /// Slopes of least energy. `m` holds those of held ends, and with `warm` a start for the others.
-    pub(crate) fn minimise(&self, m: &mut [f64], warm: bool, room: &mut Room) -> Steps {
+    /// Where convexity is asked, `fine` gets every slope as a secant that bounds it and what it differs by.
+    pub(crate) fn minimise(
+        &mut self,
+        m: &mut [f64],
+        fine: &mut [[f64; 2]],
+        warm: bool,
+        room: &mut Room,
+    ) -> Steps {
         if !warm {
             self.start(m);
             for parity in (0..2 * SWEEPS).map(|k| (k + 1) % 2) {
                 for i in (parity..m.len()).step_by(2).filter(|&i| !self.is_held(i)) {
-                    m[i] = self.relaxed(m, i);
+                    m[i] = if self.is_bent(i) { self.bent(m, i) } else { self.relaxed(m, i) };
                 }
             }
         }
-        let steps = self.newton(m, room);
+        self.set_base(m);
+        let steps = self.settle(m, room);
+        self.take_base(m, fine);
         for i in 0..m.len() {
             if !self.is_held(i) && m[i] < NOTHING * self.unit(i) && self.bound(i) == 0.0 {
                 m[i] = 0.0;
@@ -149,6 +179,7 @@ impl Stretch<'_> {
             };
             m[i] = mean.max(self.bound(i));
         }
+        self.start_bent(m);
     }
 
     /// The slope of node i that is best for those of its neighbours, nearly: the scalar convex problem, in a bracket.
@@ -194,9 +225,10 @@ impl Stretch<'_> {
         t
     }
 
-    fn newton(&self, m: &mut [f64], room: &mut Room) -> Steps {
+    /// Newton's method, until it ends or some intervals turn out to be straight.
+    pub(super) fn newton(&mut self, m: &mut [f64], room: &mut Room) -> (Steps, Vec<usize>) {
         if self.nodes() == 2 && self.held == [true, true] {
-            return Steps { solves: 0, converged: true };
+            return (Steps::default(), Vec::new());
         }
         self.evaluate(m, &mut room.now);
         for solves in 1..=STEPS {
@@ -220,23 +252,29 @@ impl Stretch<'_> {
                 }
                 t *= 0.5;
             }
-            let open = self.open(m, trial, ENOUGH * t);
+            let open = if self.bend.is_empty() {
+                self.open(m, trial, ENOUGH * t)
+            } else {
+                self.open_bent(m, trial, now, solves, ENOUGH * t)
+            };
             m.copy_from_slice(trial);
             std::mem::swap(now, next);
-            if open.is_empty() {
-                return Steps { solves, converged: true };
+            self.rebase(m);
+            let straight = self.straight(m);
+            if open.is_empty() || !straight.is_empty() {
+                return (Steps { solves, converged: true }, straight);
             }
             if 2 * open.iter().map(Range::len).sum::<usize>() < self.nodes() {
                 let mut all = Steps { solves, converged: true };
                 for nodes in open {
-                    let part = self.part(&nodes).newton(&mut m[nodes], room);
+                    let (part, _) = self.part(&nodes).newton(&mut m[nodes], room);
                     all.solves = all.solves.max(solves + part.solves);
                     all.converged &= part.converged;
                 }
-                return all;
+                return (all, Vec::new());
             }
         }
-        Steps { solves: STEPS, converged: false }
+        (Steps { solves: STEPS, converged: false }, Vec::new())
     }
 
     /// Runs of nodes around those that still moved by more than `enough`, with as many beside them as these could move.
@@ -257,7 +295,7 @@ impl Stretch<'_> {
     }
 
     /// The stretch between two of its nodes, held there.
-    fn part(&self, nodes: &Range<usize>) -> Stretch<'_> {
+    pub(super) fn part(&self, nodes: &Range<usize>) -> Stretch<'a> {
         let (start, end) = (nodes.start, nodes.end - 1);
         let last = self.h.len();
         let floor = if self.floor.is_empty() { self.floor } else { &self.floor[start..end] };
@@ -267,6 +305,9 @@ impl Stretch<'_> {
             floor,
             held: [start > 0 || self.held[0], end < last || self.held[1]],
             layer: [self.layer[0].filter(|_| start == 0), self.layer[1].filter(|_| end == last)],
+            bend: self.bend.get(start..end).unwrap_or_default(),
+            base: self.base.get(start..=end).unwrap_or_default().to_vec(),
+            opened: self.opened.get(start..end).unwrap_or_default().to_vec(),
         }
     }
 
@@ -277,6 +318,10 @@ impl Stretch<'_> {
             values.clear();
             values.resize(n, 0.0);
         }
+        if !self.bend.is_empty() {
+            model.barrier.clear();
+            model.barrier.resize(n, [0.0; 2]);
+        }
         model.energy.clear();
         model.off_diagonal.clear();
         for i in 0..n - 1 {
@@ -286,13 +331,18 @@ impl Stretch<'_> {
             for k in 0..2 {
                 model.gradient[i + k] += p.gradient[k];
                 model.diagonal[i + k] += p.hessian[2 * k];
-                model.singular[i + k] += p.singular[k];
+                if self.bend.get(i).is_some_and(|bend| *bend != 0) {
+                    model.barrier[i + k][1 - k] = p.singular[k];
+                } else {
+                    model.singular[i + k] += p.singular[k];
+                }
             }
         }
         // Held slopes, and those that the data's direction presses against their bound, stay where they are.
         for i in 0..n {
             let bound = self.bound(i);
-            let pressed = bound > 0.0 && m[i] <= bound && model.gradient[i] > 0.0;
+            let bounded = bound > 0.0 || self.is_bent(i);
+            let pressed = bounded && m[i] <= bound - self.base(i) && model.gradient[i] > 0.0;
             if self.is_held(i) || pressed {
                 (model.gradient[i], model.diagonal[i], model.singular[i]) = (0.0, 1.0, 0.0);
                 if i > 0 {
@@ -331,14 +381,16 @@ impl Stretch<'_> {
     fn moved(&self, m: &[f64], model: &Model, step: &[f64], t: f64, out: &mut Vec<f64>) {
         out.clear();
         for i in 0..m.len() {
-            let (bound, by) = (self.bound(i), t * step[i]);
+            let (bound, by) = (self.bound(i) - self.base(i), t * step[i]);
             out.push(if self.is_held(i) || step[i] == 0.0 {
                 m[i]
             } else if model.singular[i] > 0.5 * model.diagonal[i] {
                 // A term in slope^(3/2) rules: the step is taken in the root of the slope.
                 let root = (m[i] - bound).max(0.0).sqrt().max(TINY_ROOT);
                 let moved = (root + by / (2.0 * root)).max(0.0);
-                bound + moved * moved
+                self.inside(i, m[i], bound + moved * moved)
+            } else if self.is_bent(i) {
+                self.after(i, m[i], by, model.diagonal[i], model.barrier[i])
             } else {
                 bound + (m[i] - bound + by).max((m[i] - bound) / 16.0)
             });

@@ -102,7 +102,8 @@ impl MonotoneCubic {
         let fits = data.fit(x.py(), |x, y, own, go_on| {
             let slopes = slopes.as_ref().map(|slopes| slopes[own].to_vec());
             let ends = ends.clone();
-            let options = CubicOptions { ends, slopes, layer, min_slope, extrapolate };
+            let convex = None;
+            let options = CubicOptions { ends, slopes, layer, min_slope, convex, extrapolate };
             monotone::MonotoneCubic::new_with(x, y, &options, go_on)
         })?;
         Ok(object(Fits::Cubic(fits), data.into_layout(), Self))

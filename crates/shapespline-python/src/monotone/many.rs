@@ -221,6 +221,7 @@ pub(crate) fn fit_many_monotone(
                 slopes: given.as_ref().map(|given| given[from..to].to_vec()),
                 layer: layer.unwrap_or(default.layer),
                 min_slope: min_slope.unwrap_or(default.min_slope),
+                convex: None,
                 extrapolate,
             };
             monotone::MonotoneCubic::new_with(&x[from..to], &y[from..to], &options, go_on)
