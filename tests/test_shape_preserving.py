@@ -112,6 +112,20 @@ def test_any_lattice_polygon_is_fitted_or_refused_for_the_one_reason(points):
 
 
 @every_family
+@pytest.mark.parametrize("end", ["start", "end"])
+def test_a_plane_that_only_an_end_tangent_leaves(curve_class, end):
+    """Then coplanarity is a question everywhere; the last segment was not looked at."""
+    points = [[1, 0], [0, 0], [0, 2], [-1, 2], [-1, 1], [-2, 1], [-2, 3], [-1, 3], [-1, 4]]
+    points = np.c_[points, np.zeros(len(points))]
+    boundary = ss.Tangents(**{end: [-0.5, 1.0, -0.4]})
+    curve = cases.preserving(curve_class)(points, boundary=boundary)
+    assert_shape(curve)
+    asked = {r.segment for r in curve.check("coplanarity").segments if r.applicable}
+    assert asked == set(np.flatnonzero(of_curve(curve).applicable["coplanarity"]))
+    assert len(asked) > 2
+
+
+@every_family
 def test_exact_reversal_on_a_line(curve_class):
     """A turn by 180° calls for nothing: the plain cubic must be returned, with zero tension."""
     points = np.array([[0.0, 0, 0], [2, 0, 0], [1, 0, 0], [4, 0, 0]])

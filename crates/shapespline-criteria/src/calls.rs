@@ -172,8 +172,9 @@ impl Calls {
             stretch.load(polygon, own);
             let (directions, binormals) = (stretch.directions(), stretch.binormals());
             let mut turns = 0;
+            // At place j + BESIDE, as in `of_stretch`.
             for j in 0..stretch.less(2 * Stretch::BESIDE) {
-                let gamma = binormals.get(j + 1).dot(directions.get(j + 3));
+                let gamma = binormals.get(j + 2).dot(directions.get(j + 4));
                 turns += u64::from(gamma.abs() > tolerances.zero);
             }
             turns == 0
@@ -454,6 +455,24 @@ mod tests {
         }
         assert!(!planar(70, |k| if k == 69 { 1e-6 } else { 0.0 }));
         assert!(!planar(3 * BLOCK, |k| if k == 3 * BLOCK { 1e-6 } else { 0.0 }));
+    }
+
+    /// Also in the first or the last segment, by its end tangent.
+    #[test]
+    fn what_twists_in_one_segment_only_is_not_planar() {
+        let at = |k: usize| DVec3::new(k as f64, (0.7 * k as f64).sin(), 0.0);
+        let planar = |points: Vec<DVec3>, ends: Boundary| {
+            let polygon = DataPolygon::new(points, &Parametrization::Uniform, ends).unwrap();
+            Calls::is_planar(&polygon, &Tolerances::default())
+        };
+        let (flat, leaving) = (DVec3::new(1.0, 0.3, 0.0), DVec3::new(0.2, 1.0, 0.5));
+        for n in [2, 3, 9, 63, 64, 65, 130, 2 * BLOCK, 2 * BLOCK + 3] {
+            let points: Vec<DVec3> = (0..=n).map(at).collect();
+            assert!(planar(points.clone(), Boundary::tangents(flat, flat)), "{n}");
+            assert!(!planar(points.clone(), Boundary::tangents(leaving, flat)), "{n}");
+            assert!(!planar(points.clone(), Boundary::tangents(flat, leaving)), "{n}");
+            assert!(!planar(points, Boundary::tangents(None, leaving)), "{n}");
+        }
     }
 
     /// As with planes: below the square root of the tolerance a turn has no osculating plane to speak of.
