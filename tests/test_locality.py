@@ -46,3 +46,26 @@ def test_a_catmull_rom_curve_changes_on_two_segments_to_either_side(preserve, rn
     reach = 3 if preserve else 2
     assert set(changed) <= set(range(15 - reach, 15 + reach))
     assert {14, 15} <= set(changed)
+
+
+def test_a_change_of_monotone_data_fades_by_half_or_more_at_every_point(rng):
+    for _ in range(20):
+        x = np.cumsum(rng.uniform(0.2, 1, 40))
+        steps = rng.lognormal(0, 0.3, 40)
+        y = np.cumsum(steps)
+        moved = y.copy()
+        moved[20] += 0.1 * steps[20:22].min()
+        change = np.abs(ss.MonotoneCubic(x, moved).slopes - ss.MonotoneCubic(x, y).slopes)
+        assert change.argmax() in (19, 20, 21)
+        for away in range(2, 18):
+            beyond = max(change[: 20 - away + 1].max(), change[20 + away :].max())
+            assert beyond <= 2.0 ** (1 - away) * change.max()
+
+
+def test_a_point_of_the_quartic_moves_four_intervals(rng):
+    x, y = np.cumsum(rng.uniform(0.2, 1, 30)), np.cumsum(rng.lognormal(0, 1, 30))
+    moved = y.copy()
+    moved[15] += 0.1 * (y[16] - y[15])
+    q = np.linspace(x[:-1], x[1:], 20, endpoint=False)[1:]
+    before, after = ss.MonotoneQuartic(x, y)(q), ss.MonotoneQuartic(x, moved)(q)
+    assert set(np.flatnonzero((before != after).any(axis=0))) == {13, 14, 15, 16}
