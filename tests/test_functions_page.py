@@ -42,12 +42,13 @@ def numbers(cell):
 
 
 def test_the_table_of_shape_is_up_to_date(script, shapes):
-    """To the last digits, which may be the machine's: a sign near zero in a hundred."""
+    """To the last digits, which may be the machine's: one sign near zero in a hundred."""
     page = printed(script, "shape")
     assert [cells[:2] for cells in page] == [cells[:2] for cells in shapes]
     for old, new in zip(page, shapes, strict=True):
-        for a, b in zip(old[2:], new[2:], strict=True):
-            assert numbers(a) == pytest.approx(numbers(b), rel=0.01, abs=0.11)
+        for a, b, last in zip(old[2:], new[2:], (0.0011, 0.11, 0, 0), strict=True):
+            # Counts may differ by one in a hundred, those of published data not at all.
+            assert numbers(a) == pytest.approx(numbers(b), rel=0.01, abs=last)
 
 
 def test_monotone_classes_never_overshoot_and_the_cubic_has_the_least_energy(script, shapes):

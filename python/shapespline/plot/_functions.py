@@ -83,8 +83,8 @@ def interpolant(
     Parameters
     ----------
     f : PiecewisePolynomial
-        A `MonotoneQuartic`, a `MonotoneQuintic`, or a derivative or antiderivative of one; of many
-        columns, all are drawn.
+        A monotone function, or a derivative or antiderivative of one, such as `histospline`
+        returns; of many columns, all are drawn.
     ax : matplotlib.axes.Axes, optional
         Where to draw; its place in the figure is shared with those of the derivatives.
     nu : int
@@ -115,7 +115,7 @@ def interpolant(
     >>> import matplotlib
     >>> matplotlib.use("Agg")
     >>> import shapespline as ss
-    >>> f = ss.MonotoneQuintic([0, 1, 2, 5], [0, 0.2, 2, 2.1])
+    >>> f = ss.fit_monotone([0, 1, 2, 5], [0, 0.2, 2, 2.1])
     >>> ax = ss.plot.interpolant(f)
     >>> [axes.get_ylabel() for axes in ax.figure.axes]
     ['f', 'f′', 'f″']
