@@ -5,6 +5,7 @@
 //! Rooms of 1e-13 of the slope occur, so slopes are kept as the nearer bound and the difference from it: otherwise rounding
 //! of the slope would decide about energies in the eighth digit.
 
+use super::piece::Piece;
 use super::ramp::Ramp;
 use super::stretch::{Model, Room, Steps, Stretch};
 use std::ops::Range;
@@ -58,21 +59,35 @@ impl Stretch<'_> {
         if self.base.is_empty() { 0.0 } else { self.base[i] }
     }
 
-    /// Interval i with slopes m over their bases.
-    pub(super) fn ramp(&self, i: usize, bend: i8, m: [f64; 2]) -> Ramp {
-        let delta = self.secant(i);
-        let from = [0, 1].map(|end| (self.base(i + end) - delta) + m[end]);
-        Ramp::beside(bend, from, self.h[i])
+    /// A convex or concave interval i with slopes m over their bases.
+    fn ramp(&self, i: usize, m: [f64; 2]) -> Ramp {
+        Ramp::beside(self.bend[i], self.beyond_secant(i, m), self.h[i])
     }
 
-    /// Measure slopes from the nearest secants that bound them.
+    /// Interval i with slopes m over their bases, as asked.
+    pub(super) fn asked(&self, i: usize, m: [f64; 2]) -> Piece {
+        if self.bend[i] != 0 {
+            return self.ramp(i, m).piece();
+        }
+        let c = self.floor.get(i).copied().unwrap_or(0.0);
+        let slopes = [0, 1].map(|end| (self.base(i + end) + m[end] - c).max(0.0));
+        let piece = Piece::new(slopes, slopes.map(f64::sqrt), self.d[i] - c * self.h[i], self.h[i]);
+        if piece.level { piece } else { Piece::cubic(self.beyond_secant(i, m), self.h[i]) }
+    }
+
+    fn beyond_secant(&self, i: usize, m: [f64; 2]) -> [f64; 2] {
+        let delta = self.secant(i);
+        [0, 1].map(|end| (self.base(i + end) - delta) + m[end])
+    }
+
+    /// Measure slopes from the nearest secants beside them.
     pub(super) fn set_base(&mut self, m: &mut [f64]) {
         if self.bend.is_empty() {
             return;
         }
         let base = |i: usize| {
-            let edges = self.edges(i).into_iter().flatten().map(|edge| edge.0);
-            let nearest = edges.min_by(|a, b| (a - m[i]).abs().total_cmp(&(b - m[i]).abs()));
+            let secants = self.sides(i).into_iter().flatten().map(|k| self.secant(k));
+            let nearest = secants.min_by(|a, b| (a - m[i]).abs().total_cmp(&(b - m[i]).abs()));
             nearest.filter(|_| !self.is_held(i)).unwrap_or(0.0)
         };
         self.base = (0..m.len()).map(base).collect();
@@ -85,13 +100,11 @@ impl Stretch<'_> {
             if self.base[i] == 0.0 {
                 continue;
             }
-            for (end, edge) in self.edges(i).into_iter().enumerate() {
-                if let Some((edge, _)) = edge
-                    && edge != 0.0
-                    && (m[i] - edge).abs() < NEARER * m[i].abs()
-                {
+            for k in self.sides(i).into_iter().flatten() {
+                let edge = self.secant(k) - self.base[i];
+                if edge != 0.0 && (m[i] - edge).abs() < NEARER * m[i].abs() {
                     m[i] -= edge;
-                    self.base[i] = self.secant(i + end - 1);
+                    self.base[i] = self.secant(k);
                 }
             }
         }
@@ -122,6 +135,9 @@ impl Stretch<'_> {
     /// Bend a straight interval if what is beside it asks for that.
     fn opens(&mut self, i: usize, m: &mut [f64]) -> bool {
         let (n, bend) = (self.h.len(), self.bend[i]);
+        if self.opened.get(i) == Some(&true) {
+            return false;
+        }
         let asks = |k: usize, end: usize| {
             if k >= n {
                 return 0.0;
@@ -279,7 +295,7 @@ impl Stretch<'_> {
             } else {
                 m[i].max(moved[i]).max(self.unit(i))
             };
-            by > enough * size && !(self.is_bent(i) && self.is_rounding(i, model, by, steps))
+            by > enough * size && !self.is_rounding(i, model, by, steps)
         };
         let any = (0..m.len()).any(|i| !self.is_held(i) && moves(i));
         any.then_some(0..m.len()).into_iter().collect()
@@ -308,7 +324,7 @@ impl Stretch<'_> {
                 scale = scale.min((self.base(node) + m[node] - delta).abs());
             }
         }
-        let [a, b] = self.ramp(i, self.bend[i], [m[i], m[i + 1]]).arms;
+        let [a, b] = self.ramp(i, [m[i], m[i + 1]]).arms;
         a + b <= STRAIGHT[usize::from(self.opened.get(i) == Some(&true))] * scale
     }
 

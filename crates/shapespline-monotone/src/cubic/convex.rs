@@ -24,6 +24,8 @@ pub enum Convexity {
 const COLLINEAR: f64 = 1e-9;
 /// The least arm of an estimated end slope, relative to that of the parabola through three points.
 const LEAST_ARM: f64 = 0.25;
+/// Arms, relative to the secant, that are straight.
+const LEAST: f64 = 8.0 * f64::EPSILON;
 /// An interval that is straight.
 const STRAIGHT: i8 = 2;
 
@@ -58,7 +60,14 @@ impl Asked {
         if *convexity == Convexity::Data {
             asked.relax(problem);
         }
-        asked.check(problem, &source)?;
+        while let Some((node, i)) = asked.conflict(problem) {
+            // Nothing is asked where the data themselves do not allow it.
+            let given = !problem.is_level(node) && source.given(node).is_some();
+            if *convexity != Convexity::Data || given {
+                return Err(asked.refusal(problem, &source, node, i));
+            }
+            asked.kinds[i] = 0;
+        }
         Ok(asked)
     }
 
@@ -160,7 +169,7 @@ impl Asked {
             };
             let floor = problem.floor.get(i).copied().unwrap_or(0.0);
             let least = LEAST_ARM * parabola.min(delta - floor);
-            if self.kinds[i] == STRAIGHT || least == 0.0 {
+            if self.kinds[i] == STRAIGHT || least <= LEAST * delta {
                 self.kinds[i] = STRAIGHT;
                 problem.slope[node] = delta;
                 continue;
@@ -203,8 +212,8 @@ impl Asked {
         problem.held[i].then_some(problem.slope[i])
     }
 
-    /// Refuse what no function has.
-    fn check(&self, problem: &Problem, source: &Source<'_>) -> Result<(), MonotoneError> {
+    /// A node and an interval beside it of which something is asked that no function has.
+    fn conflict(&self, problem: &Problem) -> Option<(usize, usize)> {
         for node in 0..=self.kinds.len() {
             let sides = [node.checked_sub(1), (node < self.kinds.len()).then_some(node)];
             let held = self.held(problem, node);
@@ -217,7 +226,7 @@ impl Asked {
                     let own = if problem.held[node] { problem.slope[node] } else { delta };
                     let far = |slope: f64| (slope - delta).abs() > 2.0 * COLLINEAR * delta;
                     if far(own) || held.is_some_and(far) {
-                        return Err(self.refusal(problem, source, node, i));
+                        return Some((node, i));
                     }
                     continue;
                 }
@@ -228,14 +237,14 @@ impl Asked {
                     high = high.min(delta);
                 }
                 if side != 0.0 && held.is_some_and(|slope| !(side * (slope - delta) > 0.0)) {
-                    return Err(self.refusal(problem, source, node, i));
+                    return Some((node, i));
                 }
             }
             if !(low < high) {
-                return Err(self.refusal(problem, source, node, node.max(1) - 1));
+                return Some((node, node.max(1) - 1));
             }
         }
-        Ok(())
+        None
     }
 
     /// A given slope that stands against what is asked of interval i beside it, or a sign of the interval itself.

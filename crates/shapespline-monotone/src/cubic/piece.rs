@@ -29,16 +29,7 @@ impl Piece {
     pub(crate) fn new(m: [f64; 2], root: [f64; 2], d: f64, h: f64) -> Self {
         let delta = d / h;
         if m[0] + m[1] - root[0] * root[1] < 3.0 * delta {
-            // In the deviations from the secant: no cancellation on straight data.
-            let (u, v) = (m[0] - delta, m[1] - delta);
-            let by = 4.0 / h;
-            Self {
-                energy: by * (u * u + u * v + v * v),
-                gradient: [by * (2.0 * u + v), by * (u + 2.0 * v)],
-                hessian: [2.0 * by, by, 2.0 * by],
-                singular: [0.0; 2],
-                level: false,
-            }
+            Self::cubic([m[0] - delta, m[1] - delta], h)
         } else {
             let cubes = [root[0] * m[0], root[1] * m[1]];
             let s = cubes[0] + cubes[1];
@@ -61,6 +52,19 @@ impl Piece {
                 singular,
                 level: true,
             }
+        }
+    }
+
+    /// One cubic, in the deviations of its end slopes from the secant: no cancellation on straight data.
+    #[inline(always)]
+    pub(crate) fn cubic([u, v]: [f64; 2], h: f64) -> Self {
+        let by = 4.0 / h;
+        Self {
+            energy: by * (u * u + u * v + v * v),
+            gradient: [by * (2.0 * u + v), by * (u + 2.0 * v)],
+            hessian: [2.0 * by, by, 2.0 * by],
+            singular: [0.0; 2],
+            level: false,
         }
     }
 

@@ -14,7 +14,7 @@
 //! at least 8τ long, `y'' + c` is at least `(1 − 1/4 − 1/3) z > 0` at the knots. Elsewhere the slope falls by no more than
 //! `0.28 τ|c₀|` and, with `τ ≤ m/(8|z|)`, stays positive.
 
-use super::piece::Level;
+use super::piece::{Level, Piece};
 use super::problem::{Problem, Slopes};
 use super::ramp::Ramp;
 
@@ -84,7 +84,13 @@ impl Profile {
         if problem.bend[i] != 0 {
             return Self::bent(problem.bend[i], [found.fine[i], found.fine[i + 1]], d, h);
         }
-        let piece = problem.piece(i, &found.m);
+        let mut piece = problem.piece(i, &found.m);
+        if !piece.level {
+            piece = Piece::cubic(
+                [0, 1].map(|k| (found.fine[i + k][0] - d / h) + found.fine[i + k][1]),
+                h,
+            );
+        }
         let mut profile = Self { energy: piece.energy, ends: piece.ends(), ..Self::default() };
         profile.reach = [h, h];
         profile.rounding = [ULPS * f64::EPSILON * (m[0] + m[1]) / h; 2];

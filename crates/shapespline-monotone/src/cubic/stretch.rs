@@ -124,12 +124,9 @@ impl<'a> Stretch<'a> {
         {
             return layer.piece(true, m, self.d[i], self.h[i]);
         }
-        if let Some(&bend) = self.bend.get(i)
-            && bend != 0
-        {
-            return self.ramp(i, bend, m).piece();
+        if !self.bend.is_empty() {
+            return self.asked(i, m);
         }
-        let m = [self.base(i) + m[0], self.base(i + 1) + m[1]];
         if self.floor.is_empty() {
             return Piece::new(m, [m[0].sqrt(), m[1].sqrt()], self.d[i], self.h[i]);
         }

@@ -317,3 +317,75 @@ fn long_data() {
         check_smooth(&f, &x, &y, true);
     }
 }
+
+/// Steps over up to forty decades, and data that are straight up to rounding: nothing is refused, overflows or falls below
+/// the bound, and nearly all come to their end.
+#[test]
+fn wild_data() {
+    let mut next = generator(77);
+    let (mut open, mut count) = (0, 0);
+    for case in 0..1200 {
+        let sigma = [0.5, 3.0, 8.0, 14.0][case % 4];
+        let mut power = |by: f64| (by * 1.7 * (next() + next() + next() + next() - 2.0)).exp();
+        let (mut x, mut y, mut slope) = (vec![0.0f64], vec![0.0f64], 0.0);
+        for k in 0..3 + case % 37 {
+            let h = if case.is_multiple_of(3) { 1.0 } else { power(0.5 * sigma) };
+            let rise = power(sigma);
+            slope += rise;
+            let rise = match case % 5 {
+                0 => rise,
+                1 => rise * if power(1.0) < 0.5 { -1.0 } else { 1.0 },
+                2 => slope * h,
+                3 => 1.0 + 1e-10 * power(0.5),
+                _ => h * (1.0 + 1e-7 * power(0.5)),
+            };
+            x.push(x[k] + h);
+            y.push(y[k] + rise);
+        }
+        if x.windows(2).any(|w| w[0] >= w[1]) {
+            continue;
+        }
+        for ends in [Ends::Natural, Ends::Estimated, Ends::Periodic] {
+            let f = fit(&x, &y, &data_options(ends, 1.0 / 16.0));
+            count += 1;
+            open += usize::from(!f.diagnostics().converged);
+            assert!(f.bending_energy().is_finite() && f.slopes().iter().all(|m| m.is_finite()));
+            assert!(f.knots().windows(2).all(|w| w[0] < w[1]));
+            let range = y.iter().fold(0.0f64, |a, y| a.max(y.abs()));
+            let least = x.windows(2).map(|w| w[1] - w[0]).fold(f64::INFINITY, f64::min);
+            let rounding = 1e-28 * range * range / least.powi(3);
+            assert!(f.lower_bound() <= f.bending_energy() * (1.0 + 1e-8) + rounding, "case {case}");
+        }
+    }
+    assert!(count > 2500 && open * 200 <= count, "{open} of {count}");
+}
+
+/// Slopes that stay above their least, in convex data and beside level parts.
+#[test]
+fn slopes_have_a_floor() {
+    let mut next = generator(8);
+    for case in 0..100 {
+        let (x, y) = generated(&mut next, case);
+        let s = secants(&x, &y);
+        let signs = turns(&s);
+        let options = CubicOptions { min_slope: 0.3, ..data_options(Ends::Natural, 1.0 / 16.0) };
+        let f = fit(&x, &y, &options);
+        check_smooth(&f, &x, &y, false);
+        for i in 0..s.len() {
+            let level = |k: usize| k > 0 && k < s.len() && s[k - 1] * s[k] <= 0.0;
+            if signs[i] == signs[i + 1] && signs[i] != 0 && s[i] != 0.0 {
+                check_sign(&f, &x, i, signs[i], &format!("case {case}"));
+            }
+            if level(i) || level(i + 1) || s[i] == 0.0 {
+                continue;
+            }
+            let beside = &s[i.saturating_sub(1)..(i + 2).min(s.len())];
+            let least = 0.3 * beside.iter().fold(f64::INFINITY, |a, s| a.min(s.abs()));
+            for k in 0..=100 {
+                let at = x[i] + f64::from(k) / 100.0 * (x[i + 1] - x[i]);
+                let slope = f.evaluate(at, 1, None).abs();
+                assert!(slope >= least * (1.0 - 1e-12), "case {case}: {slope} in {i}");
+            }
+        }
+    }
+}
