@@ -22,11 +22,14 @@ use crate::pickle::{self, Kind, Reduced};
 /// method : str
 ///     The rung of the ladder that the hardest part needed: ``"cubic"`` (the plain C² cubic keeps the
 ///     shape), ``"elastic"``, ``"windows"``, ``"sweeps"`` or ``"start"``.
-/// iterations, solves : int
-///     Newton steps, and linear systems solved.
-/// energy, energy_cubic : float
-///     The energy that was asked for, in the user's units, and that of the plain C² cubic with the same
-///     parameters and ends.
+/// iterations : int
+///     Newton steps.
+/// solves : int
+///     Linear systems solved.
+/// energy : float
+///     The energy that was asked for, in the user's units.
+/// energy_cubic : float
+///     That energy of the plain C² cubic with the same parameters and ends.
 /// gap : float or None
 ///     ``energy / energy_cubic - 1``: no curve through the points has less parametric energy than the
 ///     plain cubic. ``None`` with ``energy="bending"``, where given tangents were shortened, and where
