@@ -1,6 +1,7 @@
 """The lines about monotone interpolation, beside SciPy's PCHIP."""
 
 from collections.abc import Iterator
+from itertools import product
 
 import numpy as np
 from measuring import Line, at_most, best, faster, within
@@ -18,12 +19,14 @@ def monotone_building(count: int) -> Iterator[Line]:
     """Compare building monotone interpolants to SciPy's PCHIP, which is C¹ only."""
     rng = np.random.default_rng(1)
     x, y = rising(rng, count) + 0.1 * np.arange(count), rising(rng, count)
-    quartic, paper, best_one, pchip = best(
+    cubic, quartic, paper, best_one, pchip = best(
+        lambda: ss.MonotoneCubic(x, y),
         lambda: ss.MonotoneQuartic(x, y),
         lambda: ss.MonotoneQuintic(x, y, slopes="fritsch-butland"),
         lambda: ss.MonotoneQuintic(x, y),
         lambda: PchipInterpolator(x, y),
     )
+    yield at_most(f"MonotoneCubic build, N = {count:g}", cubic, pchip, 6.0, "PCHIP")
     yield faster(f"MonotoneQuartic build, N = {count:g}", quartic, pchip, 3.0)
     what = "MonotoneQuintic build"
     yield faster(f"{what}, Fritsch–Butland slopes, N = {count:g}", paper, pchip, 1.0)
@@ -31,23 +34,28 @@ def monotone_building(count: int) -> Iterator[Line]:
 
 
 def monotone_evaluating(sizes: list[int], queries: int) -> Iterator[Line]:
-    """Compare values of the quintic to PCHIP's, and its inverse to its values."""
+    """Compare values to PCHIP's, and inverses to values."""
     rng = np.random.default_rng(1)
     for count in sizes:
         x, y = rising(rng, count) + 0.1 * np.arange(count), rising(rng, count)
-        quintic = ss.MonotoneQuintic(x, y, slopes="fritsch-butland")
         pchip = PchipInterpolator(x, y)
+        functions = {
+            "cubic": ss.MonotoneCubic(x, y),
+            "quintic": ss.MonotoneQuintic(x, y, slopes="fritsch-butland"),
+        }
         u = rng.uniform(x[0], x[-1], queries)
-        for order, query in (("sorted", np.sort(u)), ("unsorted", u)):
-            levels = quintic(query)
+        for (kind, f), (order, query) in product(
+            functions.items(), (("sorted", np.sort(u)), ("unsorted", u))
+        ):
+            levels = f(query)
             ours, theirs, inverse = best(
-                lambda f=quintic, q=query: f(q),
+                lambda f=f, q=query: f(q),
                 lambda f=pchip, q=query: f(q),
-                lambda f=quintic, v=levels: f.inverse(v),
+                lambda f=f, v=levels: f.inverse(v),
             )
             what = f"at {queries:g} {order}, N = {count:g}"
-            yield faster(f"evaluate quintic {what}", ours, theirs, 3.0)
-            yield at_most(f"inverse of quintic {what}", inverse, ours, 5.0, "values")
+            yield faster(f"evaluate {kind} {what}", ours, theirs, 3.0)
+            yield at_most(f"inverse of {kind} {what}", inverse, ours, 5.0, "values")
 
 
 def monotone_small() -> Iterator[Line]:
@@ -56,12 +64,14 @@ def monotone_small() -> Iterator[Line]:
     for count in (4, 20):
         x, y = np.arange(float(count)), np.cumsum(rng.exponential(size=count))
         quintic = ss.MonotoneQuintic(x, y)
-        paper, optimal, call = best(
+        cubic, paper, optimal, call = best(
+            lambda x=x, y=y: ss.MonotoneCubic(x, y),
             lambda x=x, y=y: ss.MonotoneQuintic(x, y, slopes="fritsch-butland"),
             lambda x=x, y=y: ss.MonotoneQuintic(x, y),
             lambda f=quintic: f(1.5),
             budget=0.5,
         )
+        yield within(f"one cubic, N = {count}", cubic, 15e-6)
         yield within(f"one quintic, Fritsch–Butland slopes, N = {count}", paper, 15e-6)
         yield within(f"one quintic, optimal slopes, N = {count}", optimal, 40e-6)
     yield within("one scalar call of a quintic", call, 2e-6)
@@ -72,11 +82,13 @@ def monotone_small() -> Iterator[Line]:
         for row in rows:
             PchipInterpolator(x, row)
 
-    paper, optimal, pchip = best(
+    cubic, paper, optimal, pchip = best(
+        lambda: ss.MonotoneCubic(x, columns),
         lambda: ss.MonotoneQuintic(x, columns, slopes="fritsch-butland"),
         lambda: ss.MonotoneQuintic(x, columns),
         loop,
     )
     what = "10,000 columns of 20 points"
+    yield faster(f"{what}, cubic", cubic, pchip, 30.0)
     yield faster(f"{what}, Fritsch–Butland slopes", paper, pchip, 50.0)
     yield faster(f"{what}, optimal slopes", optimal, pchip, 15.0)

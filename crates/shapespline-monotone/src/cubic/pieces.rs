@@ -186,7 +186,7 @@ impl Pieces {
     ) -> (Self, f64) {
         let n = x.len() - 1;
         let made = parts(n, |part| {
-            let mut own = Self::default();
+            let mut own = Self::with_capacity(part.len());
             let mut energy = 0.0;
             for i in part {
                 let (part, level) = push(&mut own, i);
@@ -199,9 +199,32 @@ impl Pieces {
             }
             (own, energy)
         });
-        let mut all = Self::default();
-        let mut energy = 0.0;
-        for (part, own) in made {
+        let (mut all, energy) = Self::joined(made);
+        all.nodes.push(all.x.len());
+        all.x.push(x[n]);
+        all.y.push(y[n]);
+        all.slope.push(slope(n));
+        (all, energy)
+    }
+
+    /// Room for some intervals, a knot or so in each, and the point after them.
+    fn with_capacity(intervals: usize) -> Self {
+        let knots = 2 * intervals + 1;
+        Self {
+            x: Vec::with_capacity(knots),
+            y: Vec::with_capacity(knots),
+            slope: Vec::with_capacity(knots),
+            second: Vec::with_capacity(knots),
+            nodes: Vec::with_capacity(intervals + 1),
+            level: Vec::new(),
+        }
+    }
+
+    /// Parts one after another, and the sum of their energies.
+    fn joined(parts: Vec<(Self, f64)>) -> (Self, f64) {
+        let mut parts = parts.into_iter();
+        let (mut all, mut energy) = parts.next().unwrap_or_default();
+        for (part, own) in parts {
             let start = all.x.len();
             all.nodes.extend(part.nodes.iter().map(|k| start + k));
             all.level.extend_from_slice(&part.level);
@@ -211,10 +234,6 @@ impl Pieces {
             all.second.extend_from_slice(&part.second);
             energy += own;
         }
-        all.nodes.push(all.x.len());
-        all.x.push(x[n]);
-        all.y.push(y[n]);
-        all.slope.push(slope(n));
         (all, energy)
     }
 

@@ -230,8 +230,8 @@ impl Problem {
             return Piece::default();
         }
         let c = self.floor.get(i).copied().unwrap_or(0.0);
-        let m = [m[i], m[i + 1]].map(|m| (m - c).max(0.0));
-        Piece::new(m, m.map(f64::sqrt), self.d[i] - c * self.h[i], self.h[i])
+        let m = [(m[i] - c).max(0.0), (m[i + 1] - c).max(0.0)];
+        Piece::new(m, [m[0].sqrt(), m[1].sqrt()], self.d[i] - c * self.h[i], self.h[i])
     }
 
     /// The least energies of the intervals in scaled units, and what each is above its lower bound at most.

@@ -31,6 +31,19 @@ impl Unit {
         2.0 * r / (b + (b * b + 4.0 * r * (1.0 - b)).sqrt())
     }
 
+    /// Whether the slope falls to 0, or rises from 0, as a parabola or nearly so: beside level parts of cubics, where
+    /// f is a cube.
+    #[inline(always)]
+    pub(super) fn is_cube(self) -> bool {
+        const NEAR: f64 = 1e-3;
+        (self.q[0].abs() - 1.5).abs() < NEAR && (self.q[1] - 0.5).abs() < NEAR
+    }
+
+    /// The inverse of the cube, for `from = [(y − y₀)/Δy, (y − y₁)/Δy]`.
+    pub(super) fn root(self, from: [f64; 2]) -> f64 {
+        if self.q[0] > 0.0 { from[0].cbrt() } else { 1.0 + from[1].cbrt() }
+    }
+
     /// The first and the second derivative at t.
     pub(super) fn derivatives(self, t: f64) -> (f64, f64) {
         let [q0, q1, q2, q3] = self.q;
@@ -112,6 +125,13 @@ impl Lanes {
             l.t[j] = unit.start(r);
             [l.q[0][j], l.q[1][j], l.q[2][j], l.q[3][j]] = unit.q;
             (l.from[0][j], l.from[1][j]) = (r, l.from[1][j] * inverse);
+        }
+        // A loop of its own: calls keep the compiler from taking several queries at once.
+        for j in 0..TILE {
+            let unit = Unit { q: [l.q[0][j], l.q[1][j], l.q[2][j], l.q[3][j]], m: [0.0; 2] };
+            if unit.is_cube() {
+                l.t[j] = unit.root([l.from[0][j], l.from[1][j]]);
+            }
         }
         l
     }

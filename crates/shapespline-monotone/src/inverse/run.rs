@@ -38,7 +38,11 @@ pub(super) fn invert(record: &Record, end: f64, y: &[f64], out: &mut [f64], room
         *from1 = (y - y1) * inverse;
     }
     let blocks = ((from0[n - 1] - from0[0]).abs() * BLOCKS) as usize + 1;
-    if n >= blocks * LEAST {
+    if unit.is_cube() {
+        for (t, (from0, from1)) in t.iter_mut().zip(from0.iter().zip(&*from1)) {
+            *t = unit.root([*from0, *from1]);
+        }
+    } else if n >= blocks * LEAST {
         between_nodes(unit, blocks, from0, from1, t);
     } else {
         for (t, from0) in t.iter_mut().zip(&*from0) {
