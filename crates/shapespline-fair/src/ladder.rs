@@ -16,9 +16,8 @@ use crate::{
     search::Answer,
     segment::Demands,
     shape::off_chord,
-    solve::{
-        LAST, finish, finish_bending, improve, quicken, replace, restart_all, settle_nearby, solve,
-    },
+    solve::{LAST, Means, finish, finish_bending, improve, quicken, settle_nearby, solve},
+    starts::{replace, restart_all},
     window::{BESIDE, Window, windows},
 };
 
@@ -233,7 +232,7 @@ impl Found<'_> {
         let mut method = Method::Elastic;
         chain.relax_speeds();
         if !chain.all_hold() {
-            method = solve(demands, &mut chain, true, control).unwrap_or(method);
+            method = solve(demands, &mut chain, Means::All, control).unwrap_or(method);
         }
         quicken(demands, &mut chain, control);
         finish_bending(&mut chain, control);

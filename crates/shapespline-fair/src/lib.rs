@@ -65,6 +65,7 @@ mod shape;
 mod solve;
 mod spline;
 mod start;
+mod starts;
 mod window;
 
 pub use constraints::Constraints;

@@ -13,7 +13,8 @@ use crate::{
     control::Control,
     newton::Limits,
     segment::Demands,
-    start::{Scales, start},
+    start::Scales,
+    starts::set_start,
 };
 
 /// Scales of the restarts that are tried.
@@ -126,10 +127,9 @@ fn best_restart(
 ) -> Option<(f64, Chain)> {
     let mut best: Option<(f64, Chain)> = None;
     for scales in SCALES {
-        let mut part = restart(demands, chain, nodes.clone(), scales);
-        let barrier = Barrier { weight: 10.0, penalty: Some(1e4), protects: true };
-        let limits = Limits { decrement: 1e-3, steps: effort.steps, until_all_hold: true };
-        part.minimise(&barrier, limits, control);
+        let mut part = part(chain, nodes.clone());
+        restart(demands, &mut part, scales);
+        come_to_hold(&mut part, effort.steps, control);
         if !part.all_hold() {
             continue;
         }
@@ -196,32 +196,19 @@ pub(crate) fn part(chain: &Chain, nodes: Range<usize>) -> Chain {
     Chain::new(segments, parts, freedom, chain.first + from, chain.rules)
 }
 
-fn restart(demands: &Demands<'_>, chain: &Chain, nodes: Range<usize>, scales: Scales) -> Chain {
-    let mut part = part(chain, nodes);
+/// Puts all nodes of a part that may move where the closed-form start has them.
+fn restart(demands: &Demands<'_>, part: &mut Chain, scales: Scales) {
     for j in 0..part.nodes.len() {
-        set_start(demands, &mut part, j, scales);
+        set_start(demands, part, j, scales);
     }
     part.ask_no_speed();
-    part
 }
 
-/// Puts a node where the closed-form start has it, as far as it may move.
-pub(crate) fn set_start(demands: &Demands<'_>, chain: &mut Chain, j: usize, scales: Scales) {
-    let total = demands.checker.polygon().nodes();
-    let start = start(demands, (chain.first + j) % total, scales);
-    match chain.freedom[j] {
-        Freedom::Free | Freedom::Along(_) | Freedom::Straight(_) => chain.nodes[j] = start,
-        Freedom::TangentHeld | Freedom::StraightHeld(_) => chain.nodes[j].r = start.r,
-        Freedom::Held => {}
-    }
-}
-
-/// Makes a given tangent no longer than the handle of the closed-form start.
-pub(crate) fn shorten(demands: &Demands<'_>, chain: &mut Chain, j: usize, scales: Scales) {
-    let total = demands.checker.polygon().nodes();
-    let handle = start(demands, (chain.first + j) % total, scales).q.length();
-    let tangent = &mut chain.nodes[j].q;
-    *tangent *= (handle / tangent.length()).min(1.0);
+/// Brings what fails of a chain to hold, while the barrier proper keeps what holds.
+pub(crate) fn come_to_hold(chain: &mut Chain, steps: usize, control: &mut Control<'_>) {
+    let barrier = Barrier { weight: 10.0, penalty: Some(1e4), protects: true };
+    let limits = Limits { decrement: 1e-3, steps, until_all_hold: true };
+    chain.minimise(&barrier, limits, control);
 }
 
 /// Lets a mended part and its surroundings settle: what is minimised there, and the nodes.

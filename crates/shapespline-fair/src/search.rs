@@ -9,7 +9,7 @@ use crate::{
     ladder::{Found, Solved, certify, fall_back, index},
     rows::Rules,
     segment::Demands,
-    solve::{LAST, finish, quicken, solve},
+    solve::{LAST, Means, finish, quicken, solve},
     window::{BESIDE, Window, windows},
 };
 
@@ -37,7 +37,8 @@ impl Found<'_> {
             let around = |failing: &[usize]| windows(failing, count, closed, beside);
             let meet = |a: Window, b: Window| a.meets(b, count, closed);
             let all = absorb(&mut done, &mut failing, meet, around);
-            let found = self.solve_each(demands, rules, &all, beside >= WIDE, control);
+            let means = if beside == BESIDE { Means::Near } else { Means::Far };
+            let found = self.solve_each(demands, rules, &all, means, control);
             let mut owners = owners(&failing, &all, count);
             failing.clear();
             for ((window, found), own) in all.into_iter().zip(found).zip(owners.drain(..)) {
@@ -63,11 +64,11 @@ impl Found<'_> {
         demands: &Demands<'_>,
         rules: Rules,
         all: &[Window],
-        thorough: bool,
+        means: Means,
         control: &mut Control<'_>,
     ) -> Vec<Option<Answer>> {
         let of = |window: &Window, control: &mut Control<'_>| {
-            self.solve_window(demands, rules, *window, thorough, control)
+            self.solve_window(demands, rules, *window, means, control)
         };
         if all.len() < 2 || demands.checker.polygon().segments() < MANY || control.is_limited() {
             return all.iter().map(|window| of(window, control)).collect();
@@ -85,23 +86,23 @@ impl Found<'_> {
         found.into_iter().map(join).collect()
     }
 
-    /// What is found in a window; none where it takes a wider one, or a `thorough` search.
+    /// What is found in a window; none where it takes a wider one, or other means.
     fn solve_window(
         &self,
         demands: &Demands<'_>,
         rules: Rules,
         window: Window,
-        thorough: bool,
+        means: Means,
         control: &mut Control<'_>,
     ) -> Option<Answer> {
         let whole = window.count == demands.checker.polygon().nodes();
-        let thorough = thorough || whole;
+        let means = if whole { Means::All } else { means };
         let mut chain = window.chain(demands, &|i| self.plain.node(i, demands.units), rules);
-        let mut method = solve(demands, &mut chain, thorough, control)?;
+        let mut method = solve(demands, &mut chain, means, control)?;
         quicken(demands, &mut chain, control);
         finish(&mut chain, LAST, control);
         let mut open = certify(demands, &mut chain, control);
-        if !open.is_empty() && thorough {
+        if !open.is_empty() && means != Means::Near {
             method = fall_back(demands, &mut chain, &mut open, control).unwrap_or(method);
         }
         (open.is_empty() || whole).then(|| Answer::of(demands, &chain, method, open))

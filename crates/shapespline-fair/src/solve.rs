@@ -3,12 +3,13 @@
 use crate::{
     Energy, Method, Phase,
     barrier::Barrier,
-    chain::Chain,
+    chain::{Chain, Freedom},
     control::Control,
-    mend::{clusters, mend, part, put, refresh, set_start, shorten},
+    mend::{clusters, come_to_hold, mend, part, put, refresh},
     newton::Limits,
     segment::Demands,
-    start::Scales,
+    starts::{replace, restart_all},
+    window::BESIDE,
 };
 
 /// The elastic phase: weights of the barrier, and the penalty.
@@ -27,54 +28,106 @@ pub(crate) const LAST: f64 = 1e-3;
 /// and its restarts took 10 s and ended at the closed-form start).
 const TIGHT: f64 = 1e-3;
 
+/// Steps in which the nodes of a window come to meet those beside it.
+const MEETING: usize = 40;
+
 /// Newton's last steps; each doubles the digits.
 const POLISH: usize = 10;
 
 /// Searches for segments that nearly stop.
 const ROUNDS: usize = 4;
 
-/// Finds a feasible chain (by all means if it is to be `thorough`), and brings its parametric energy down. The
-/// method that it took, or nothing where it takes a wider chain; the whole curve always has an answer.
+/// How much is tried to find a feasible chain.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Means {
+    /// What changes little.
+    Near,
+    /// All nodes put elsewhere: what changes little was tried in a narrower window.
+    Far,
+    /// The one, and else the other.
+    All,
+}
+
+/// Finds a feasible chain, and brings its parametric energy down. The method that it took, or nothing where it takes
+/// other means; the whole curve always has an answer.
 pub(crate) fn solve(
     demands: &Demands<'_>,
     chain: &mut Chain,
-    thorough: bool,
+    means: Means,
     control: &mut Control<'_>,
 ) -> Option<Method> {
     let mut method = Method::Elastic;
-    let is_tight = is_tight(chain);
-    if !is_tight {
+    if means != Means::Far && !is_tight(chain) {
         control.begin(Phase::Elastic, chain.failing().len());
-        for nodes in clusters(chain, &chain.failing(), NEAR) {
-            let mut part = part(chain, nodes);
-            for weight in ELASTIC {
-                part.choose_changes();
-                let barrier = Barrier { weight, penalty: Some(PENALTY), protects: false };
-                let limits = Limits { decrement: 0.1 * weight, steps: 60, until_all_hold: false };
-                part.minimise(&barrier, limits, control);
-            }
-            put(demands, chain, &part);
+        pull(demands, chain, control);
+        chain.relax_speeds();
+        if !chain.all_hold() {
+            method = Method::Windows;
+            control.begin(Phase::Restart, chain.failing().len());
+            mend(demands, chain, control);
         }
     }
     chain.relax_speeds();
-    if !chain.all_hold() && !is_tight {
-        method = Method::Windows;
-        control.begin(Phase::Restart, chain.failing().len());
-        mend(demands, chain, control);
-        chain.relax_speeds();
-    }
     control.begin(Phase::Improve, chain.failing().len());
     if !chain.all_hold() {
-        if !thorough {
+        if means == Means::Near {
             return None;
         }
         method = Method::Sweeps;
+        let before = chain.nodes.clone();
         replace(demands, chain);
-        improve(chain, 1.0, control);
-        improve(chain, 0.1, control);
+        if chain.all_hold() {
+            improve(chain, 1.0, control);
+            improve(chain, 0.1, control);
+        } else {
+            chain.nodes = before;
+            approach(demands, chain, control);
+        }
     }
     improve(chain, 0.01, control);
     Some(method)
+}
+
+/// The elastic phase: pulls what fails into shape, each run of failing segments by itself.
+fn pull(demands: &Demands<'_>, chain: &mut Chain, control: &mut Control<'_>) {
+    for nodes in clusters(chain, &chain.failing(), NEAR) {
+        let mut part = part(chain, nodes);
+        for weight in ELASTIC {
+            part.choose_changes();
+            let barrier = Barrier { weight, penalty: Some(PENALTY), protects: false };
+            let limits = Limits { decrement: 0.1 * weight, steps: 60, until_all_hold: false };
+            part.minimise(&barrier, limits, control);
+        }
+        put(demands, chain, &part);
+    }
+}
+
+/// From the closed-form start, where its nodes and the held ones beside a window do not meet: the window is solved with
+/// ends that are free, and then its outer nodes are put back, where the curve is the plain cubic again.
+fn approach(demands: &Demands<'_>, chain: &mut Chain, control: &mut Control<'_>) {
+    let (nodes, freedom) = (chain.nodes.clone(), chain.freedom.clone());
+    for own in &mut chain.freedom {
+        if *own == Freedom::Held {
+            *own = Freedom::Free;
+        }
+    }
+    restart_all(demands, chain);
+    for weight in [1.0, 0.1, 0.01] {
+        improve(chain, weight, control);
+    }
+    chain.freedom = freedom;
+    let last = nodes.len() - 1;
+    for (j, node) in nodes.into_iter().enumerate() {
+        let near = |end: usize| chain.freedom[end] == Freedom::Held && j.abs_diff(end) < BESIDE;
+        if near(0) || near(last) {
+            chain.nodes[j] = node;
+        }
+    }
+    chain.relax_speeds();
+    if !chain.all_hold() {
+        come_to_hold(chain, MEETING, control);
+        chain.relax_speeds();
+    }
 }
 
 /// Brings a chain that nearly holds to hold, and then to its minimum. Whether it came to hold.
@@ -118,7 +171,7 @@ fn is_tight(chain: &Chain) -> bool {
 /// Where a feasible chain nearly stops, `∫|Q''|²du` does not see how it bends: minimises the bending energy of
 /// such a chain, with restarts at its slow segments.
 pub(crate) fn quicken(demands: &Demands<'_>, chain: &mut Chain, control: &mut Control<'_>) {
-    if is_tight(chain) {
+    if is_tight(chain) || !chain.all_hold() {
         return;
     }
     let count = chain.segments.len();
@@ -169,81 +222,4 @@ pub(crate) fn improve(chain: &mut Chain, weight: f64, control: &mut Control<'_>)
     let barrier = Barrier { weight, penalty: None, protects: false };
     let limits = Limits { decrement: 0.03 * weight, steps: 100, until_all_hold: false };
     chain.minimise(&barrier, limits, control);
-}
-
-/// Puts as many nodes of a chain where the closed-form start has them as it takes for all conditions to
-/// hold.
-pub(crate) fn replace(demands: &Demands<'_>, chain: &mut Chain) {
-    let before = chain.nodes.clone();
-    restart_all(demands, chain);
-    let closed = std::mem::replace(&mut chain.nodes, before);
-    chain.choose_changes();
-    // Each round replaces a node at least.
-    for _ in 0..=chain.nodes.len() {
-        let failing = chain.failing();
-        let nodes: Vec<usize> = failing.iter().flat_map(|&k| chain.ends(k)).collect();
-        let mut changed = false;
-        for j in nodes {
-            changed |= chain.nodes[j] != closed[j];
-            chain.nodes[j] = closed[j];
-        }
-        if !changed {
-            break;
-        }
-        chain.choose_changes();
-    }
-    chain.relax_speeds();
-}
-
-/// Puts all nodes of a chain where the closed-form start has them, with handles as long as hold. Given
-/// tangents keep their length where that is possible, and else are as short as the handles.
-pub(crate) fn restart_all(demands: &Demands<'_>, chain: &mut Chain) {
-    chain.ask_no_speed();
-    if !start_all(demands, chain, false)
-        && chain.freedom.iter().any(|freedom| freedom.holds_tangent())
-    {
-        start_all(demands, chain, true);
-    }
-}
-
-/// As [`restart_all`], with given tangents shortened or not. Whether all conditions hold.
-fn start_all(demands: &Demands<'_>, chain: &mut Chain, shortens: bool) -> bool {
-    let natural = Scales { tilt: 1.0, handle: 1.0, curvature: 0.3 };
-    let mut scales = vec![natural; chain.nodes.len()];
-    // A handle of 1e−13 of its natural length is the last that is tried.
-    for _ in 0..60 {
-        for (j, &scales) in scales.iter().enumerate() {
-            set_start(demands, chain, j, scales);
-            if shortens && chain.freedom[j].holds_tangent() {
-                shorten(demands, chain, j, scales);
-            }
-        }
-        chain.choose_changes();
-        let mut shrink: Vec<usize> = chain.failing().iter().flat_map(|&k| chain.ends(k)).collect();
-        if shrink.is_empty() {
-            return true;
-        }
-        shrink.sort_unstable();
-        shrink.dedup();
-        for j in shrink {
-            scales[j].handle *= 0.6;
-            scales[j].curvature *= 0.8;
-        }
-        even_out(demands, chain, &mut scales);
-    }
-    false
-}
-
-/// Gives both ends of every segment that inflects near a plane the shorter handle: their ratio says where it
-/// inflects.
-fn even_out(demands: &Demands<'_>, chain: &Chain, scales: &mut [Scales]) {
-    let total = demands.checker.polygon().segments();
-    let count = chain.segments.len();
-    for k in (0..count).chain((0..count).rev()) {
-        if demands.is_split((chain.first + k) % total) {
-            let [a, b] = chain.ends(k);
-            let least = scales[a].handle.min(scales[b].handle);
-            (scales[a].handle, scales[b].handle) = (least, least);
-        }
-    }
 }

@@ -182,7 +182,7 @@ mod tests {
 
     use super::*;
     use crate::{
-        Constraints, cubic::Plain, rows::Rules, runs::Runs, segment::Units, solve::restart_all,
+        Constraints, cubic::Plain, rows::Rules, runs::Runs, segment::Units, starts::restart_all,
         window::Window,
     };
 
