@@ -31,6 +31,8 @@ const NOTHING: [f64; 2] = [1e-26, 1e-16];
 const PATIENCE: usize = 20;
 /// The least room before a bound, relative to it, that sweeps leave, which do not know of smaller ones.
 const COARSE: f64 = 1e-9;
+/// Ulps above the least slope that are none: rounding of the sum.
+const ULPS: f64 = 8.0;
 /// A bound takes the place of another when it is nearer by this.
 const NEARER: f64 = 0.25;
 
@@ -70,7 +72,8 @@ impl Stretch<'_> {
             return self.ramp(i, m).piece();
         }
         let c = self.floor.get(i).copied().unwrap_or(0.0);
-        let slopes = [0, 1].map(|end| (self.base(i + end) + m[end] - c).max(0.0));
+        let over = |slope: f64| if slope - c <= ULPS * f64::EPSILON * c { 0.0 } else { slope - c };
+        let slopes = [0, 1].map(|end| over(self.base(i + end) + m[end]));
         let piece = Piece::new(slopes, slopes.map(f64::sqrt), self.d[i] - c * self.h[i], self.h[i]);
         if piece.level { piece } else { Piece::cubic(self.beyond_secant(i, m), self.h[i]) }
     }
@@ -113,8 +116,10 @@ impl Stretch<'_> {
     /// The slopes themselves.
     pub(super) fn take_base(&mut self, m: &mut [f64], fine: &mut [[f64; 2]]) {
         for (i, base) in std::mem::take(&mut self.base).into_iter().enumerate() {
-            fine[i] = [base, m[i]];
-            m[i] += base;
+            let (slope, bound) = (base + m[i], self.bound(i));
+            let pressed = !self.is_held(i) && slope <= bound * (1.0 + ULPS * f64::EPSILON);
+            fine[i] = if pressed { [bound, 0.0] } else { [base, m[i]] };
+            m[i] = fine[i][0] + fine[i][1];
         }
     }
 
