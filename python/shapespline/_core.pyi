@@ -608,6 +608,7 @@ class MonotoneSpline(PiecewisePolynomial):
     def diagnostics(self) -> MonotoneDiagnostics | list[MonotoneDiagnostics]: ...
     def inverse(self, y: ArrayLike) -> float | _Floats: ...
 
+_Convex = Literal["data"] | ArrayLike | None
 _Ends = Literal["estimated", "natural", "periodic"] | tuple[float | None, float | None]
 
 @final
@@ -618,6 +619,7 @@ class MonotoneCubic(MonotoneSpline):
         y: ArrayLike,
         axis: int = 0,
         *,
+        convex: _Convex = None,
         slopes: ArrayLike | None = None,
         ends: _Ends = "estimated",
         layer: float = 0.0625,
@@ -756,6 +758,7 @@ def fit_many_monotone(
     *,
     kind: Literal["cubic", "quintic", "quartic"] = "cubic",
     offsets: ArrayLike | None = None,
+    convex: _Convex = None,
     slopes: Literal["optimal", "fritsch-butland"] | ArrayLike | None = None,
     ends: _Ends | None = None,
     layer: float | None = None,

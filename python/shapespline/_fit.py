@@ -44,7 +44,7 @@ _CHECK = ("criteria", "resolution", "coplanarity", "collinearity", "tolerance")
 _CURVE = ("parameters", "boundary", "closed", "repeated", "start_tangent", "end_tangent")
 #: Of the options of functions those that a command line can say.
 _FUNCTION_FLAGS = {
-    "cubic": ("ends", "layer", "min_slope", "tolerance"),
+    "cubic": ("convex", "ends", "layer", "min_slope", "tolerance"),
     "quintic": ("slopes", "energy", "tolerance"),
     "quartic": ("shape", "tolerance"),
 }

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
         MonotoneQuintic,
         MonotoneSpline,
         PiecewisePolynomial,
+        _Convex,
         _Ends,
         _Extrapolate,
     )
@@ -36,6 +37,7 @@ def fit_monotone(
     axis: int = ...,
     *,
     kind: Literal["cubic"] = ...,
+    convex: _Convex = ...,
     slopes: ArrayLike | None = ...,
     ends: _Ends | None = ...,
     layer: float | None = ...,
@@ -71,6 +73,7 @@ def fit_monotone(
     axis: int = 0,
     *,
     kind: Literal["cubic", "quintic", "quartic"] = "cubic",
+    convex: _Convex = None,
     slopes: str | ArrayLike | None = None,
     ends: _Ends | None = None,
     layer: float | None = None,
@@ -95,7 +98,7 @@ def fit_monotone(
         data alone; or `MonotoneQuartic`, C¹ and local.
     slopes : array_like or str, optional
         As for the class.
-    ends, layer, min_slope
+    convex, ends, layer, min_slope
         Kind ``"cubic"``: as for `MonotoneCubic`.
     energy, clip
         Kind ``"quintic"``: as for `MonotoneQuintic`.
@@ -135,6 +138,7 @@ def fit_monotone(
     <MonotoneQuartic: 4 knots from 0 to 4, degree 4>
     """
     options = {
+        "convex": convex,
         "slopes": slopes,
         "ends": ends,
         "layer": layer,

@@ -34,7 +34,7 @@ class Kind:
 #: Every kind of `fit_monotone`, `fit_many_monotone` and ``shapespline fit``, the default first.
 KINDS: Mapping[str, Kind] = MappingProxyType(
     {
-        "cubic": Kind(MonotoneCubic, ("slopes", "ends", "layer", "min_slope")),
+        "cubic": Kind(MonotoneCubic, ("convex", "slopes", "ends", "layer", "min_slope")),
         "quintic": Kind(MonotoneQuintic, ("slopes", "energy", "clip")),
         "quartic": Kind(MonotoneQuartic, ("slopes", "shape")),
     }

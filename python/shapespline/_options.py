@@ -245,6 +245,9 @@ def add_fit_options(parser: argparse.ArgumentParser, methods: Iterable[str]) -> 
 
     function = parser.add_argument_group("functions (cubic, quintic, quartic)")
     function.add_argument(
+        "--convex", choices=["data"], help="cubic: convex and concave where the data are"
+    )
+    function.add_argument(
         "--ends",
         choices=["estimated", "natural", "periodic"],
         help="cubic: slopes at the ends (default: estimated)",

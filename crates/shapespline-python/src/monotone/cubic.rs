@@ -6,7 +6,7 @@ use shapespline::monotone::{self, CubicOptions, Ends, Extrapolation};
 use super::{
     families::{Data, object},
     fits::Fits,
-    options::{self, Given},
+    options::{self, ConvexOption, Given},
     spline::MonotoneSpline,
 };
 use crate::output::shaped;
@@ -21,6 +21,11 @@ use crate::output::shaped;
 ///     Data of any shape with n entries along ``axis``; every column is fitted, in parallel.
 /// axis : int
 ///     The axis of y that goes with x.
+/// convex : {"data"} or array_like of int, optional
+///     Where the function is to be convex or concave as well: ``"data"``, wherever the data are; or per
+///     interval 1 (convex), -1 (concave) or 0 (not asked), of shape (n - 1,) or as y with n - 1 entries
+///     along its axis. 1 beside -1 makes the point between them one of inflection. Where the data are
+///     neither convex nor concave throughout, intervals get up to eight knots.
 /// slopes : array_like, optional
 ///     Slopes at the points, NaN where they are free (in the shape of ``y``, or (n,) for every column).
 ///     A slope against the data is refused; the second derivative jumps at given slopes.
@@ -79,9 +84,9 @@ pub(crate) struct MonotoneCubic;
 impl MonotoneCubic {
     #[new]
     #[pyo3(
-        signature = (x, y, axis=0, *, slopes=None, ends=Ends::Estimated, layer=1.0 / 16.0,
+        signature = (x, y, axis=0, *, convex=ConvexOption::Nowhere, slopes=None, ends=Ends::Estimated, layer=1.0 / 16.0,
                      min_slope=0.0, extrapolate=Some(Extrapolation::LINEAR)),
-        text_signature = "(x, y, axis=0, *, slopes=None, ends='estimated', layer=0.0625, \
+        text_signature = "(x, y, axis=0, *, convex=None, slopes=None, ends='estimated', layer=0.0625, \
                           min_slope=0.0, extrapolate='linear')"
     )]
     // One argument per keyword: this is the signature that users see.
@@ -90,6 +95,7 @@ impl MonotoneCubic {
         x: &Bound<'_, PyAny>,
         y: &Bound<'_, PyAny>,
         #[pyo3(from_py_with = options::axis)] axis: isize,
+        #[pyo3(from_py_with = options::convex)] convex: ConvexOption,
         #[pyo3(from_py_with = options::given_slopes)] slopes: Option<Given>,
         #[pyo3(from_py_with = options::ends)] ends: Ends,
         #[pyo3(from_py_with = options::layer)] layer: f64,
@@ -98,11 +104,12 @@ impl MonotoneCubic {
     ) -> PyResult<PyClassInitializer<Self>> {
         let data = Data::of(x, y, axis)?;
         let slopes = data.given(slopes.as_ref())?;
+        let convex = data.convex(&convex)?;
         let extrapolate = extrapolate.unwrap_or_default();
         let fits = data.fit(x.py(), |x, y, own, go_on| {
+            let convex = convex[own.start / x.len()].clone();
             let slopes = slopes.as_ref().map(|slopes| slopes[own].to_vec());
             let ends = ends.clone();
-            let convex = None;
             let options = CubicOptions { ends, slopes, layer, min_slope, convex, extrapolate };
             monotone::MonotoneCubic::new_with(x, y, &options, go_on)
         })?;

@@ -4,14 +4,15 @@ use std::{ops::Range, sync::Arc};
 
 use pyo3::{PyClass, PyClassInitializer, prelude::*};
 use shapespline::monotone::{
-    Extrapolation, Fairness, MonotoneError, QuarticOptions, QuinticOptions, Shape, Slopes,
+    Convexity, Extrapolation, Fairness, MonotoneError, QuarticOptions, QuinticOptions, Shape,
+    Slopes,
 };
 
 use super::{
     fits::{Fits, fit_all},
     function::PiecewisePolynomial,
     layout::Layout,
-    options::{self, Given, SlopesOption, column_error},
+    options::{self, ConvexOption, Given, SlopesOption, column_error},
     spline::MonotoneSpline,
 };
 use crate::{
@@ -72,6 +73,12 @@ impl<'py> Data<'py> {
             given.resize(n, 0.0);
         }
         Ok(Some(given))
+    }
+
+    /// What is asked of the convexity of every column.
+    pub(super) fn convex(&self, convex: &ConvexOption) -> PyResult<Vec<Option<Convexity>>> {
+        let (n, columns) = (self.x.values().len(), self.layout.columns().max(1));
+        convex.columns(&self.y, self.layout.axis(), [columns, n])
     }
 
     /// `fit(x, y, own, go_on)` of every column, which has the numbers `own` of all columns.

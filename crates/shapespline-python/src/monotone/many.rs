@@ -8,12 +8,12 @@ use shapespline::monotone::{
 
 use super::{
     fits::{Fits, fit_all},
-    options::{self, SlopesOption},
+    options::{self, ConvexOption, SlopesOption},
     places::check_offsets,
     rows::PiecewiseRows,
 };
 use crate::{
-    error::{Value, invalid, monotone_error},
+    error::{Value, invalid, monotone_error, must},
     input::{Array, Offsets, array, kind, text},
     options::choose,
     work::GoOn,
@@ -126,8 +126,9 @@ fn min_slope(object: &Bound<'_, PyAny>) -> PyResult<Option<f64>> {
 /// slopes : {"optimal", "fritsch-butland"} or array_like, optional
 ///     As for the kind, with one slope per entry of ``y``; None is its own default. Where x and y have
 ///     two axes, slopes of shape (n,) are for every row. The cubic takes numbers alone, NaN where free.
-/// ends, layer, min_slope
-///     For the cubic alone, as for `MonotoneCubic`; None is its own default.
+/// convex, ends, layer, min_slope
+///     For the cubic alone, as for `MonotoneCubic`; None is its own default. Signs of ``convex`` are of
+///     shape (n - 1,) or (rows, n - 1); with offsets there are none.
 /// energy : {"bending", "parametric"}, optional
 ///     For the quintic alone; None is "bending".
 /// clip : bool
@@ -159,10 +160,11 @@ fn min_slope(object: &Bound<'_, PyAny>) -> PyResult<Option<f64>> {
 /// array([1., 2.])
 #[pyfunction]
 #[pyo3(
-    signature = (x, y, *, kind=Kind::Cubic, offsets=None, slopes=None, ends=None, layer=None,
+    signature = (x, y, *, kind=Kind::Cubic, offsets=None, convex=ConvexOption::Nowhere, slopes=None,
+                 ends=None, layer=None,
                  min_slope=None, energy=None, clip=false, shape=None,
                  extrapolate=Some(Extrapolation::LINEAR)),
-    text_signature = "(x, y, *, kind='cubic', offsets=None, slopes=None, ends=None, layer=None, \
+    text_signature = "(x, y, *, kind='cubic', offsets=None, convex=None, slopes=None, ends=None, layer=None, \
                       min_slope=None, energy=None, clip=False, shape=None, \
                       extrapolate='linear')"
 )]
@@ -174,6 +176,7 @@ pub(crate) fn fit_many_monotone(
     y: &Bound<'_, PyAny>,
     #[pyo3(from_py_with = family)] kind: Kind,
     offsets: Option<Offsets>,
+    #[pyo3(from_py_with = options::convex)] convex: ConvexOption,
     #[pyo3(from_py_with = slopes)] slopes: Option<SlopesOption>,
     #[pyo3(from_py_with = ends)] ends: Option<Ends>,
     #[pyo3(from_py_with = layer)] layer: Option<f64>,
@@ -187,6 +190,7 @@ pub(crate) fn fit_many_monotone(
     let ragged = offsets.is_some();
     let bounds = offsets_of(&x, &y, offsets)?;
     let (cubic, quintic) = (&[Kind::Cubic][..], &[Kind::Quintic][..]);
+    kind.allows("convex", "convex", !matches!(convex, ConvexOption::Nowhere), cubic)?;
     kind.allows("ends", "ends", ends.is_some(), cubic)?;
     kind.allows("layer", "layer", layer.is_some(), cubic)?;
     kind.allows("min_slope", "min_slope", min_slope.is_some(), cubic)?;
@@ -206,6 +210,14 @@ pub(crate) fn fit_many_monotone(
         Some(slopes) => Some(slopes.columns(&y, [1, y.values().len()], <[f64]>::to_vec)?),
         None => None,
     };
+    let rows = bounds.len() - 1;
+    let convex = if !ragged {
+        convex.columns(&y, 1, [rows, bounds[1]])?
+    } else if let ConvexOption::Signs { shape, .. } = &convex {
+        return Err(must("convex", &[], "be None or 'data' where there are offsets", &shape[..]));
+    } else {
+        convex.columns(&y, 0, [rows, 2])?
+    };
     let (x, y) = (x.values(), y.values());
     let of = |from: usize, to: usize| match (&slopes, &given, kind) {
         (_, Some(given), _) => Slopes::Given(given[from..to].to_vec()),
@@ -214,24 +226,24 @@ pub(crate) fn fit_many_monotone(
     };
     let extrapolate = extrapolate.unwrap_or_default();
     let fits = match kind {
-        Kind::Cubic => Fits::Cubic(fit_rows(py, &bounds, |from, to, go_on| {
+        Kind::Cubic => Fits::Cubic(fit_rows(py, &bounds, |k, [from, to], go_on| {
             let default = CubicOptions::default();
             let options = CubicOptions {
                 ends: ends.clone().unwrap_or(default.ends),
                 slopes: given.as_ref().map(|given| given[from..to].to_vec()),
                 layer: layer.unwrap_or(default.layer),
                 min_slope: min_slope.unwrap_or(default.min_slope),
-                convex: None,
+                convex: convex[k].clone(),
                 extrapolate,
             };
             monotone::MonotoneCubic::new_with(&x[from..to], &y[from..to], &options, go_on)
         })?),
-        Kind::Quintic => Fits::Quintic(fit_rows(py, &bounds, |from, to, go_on| {
+        Kind::Quintic => Fits::Quintic(fit_rows(py, &bounds, |_, [from, to], go_on| {
             let fairness = energy.unwrap_or_default();
             let options = QuinticOptions { slopes: of(from, to), fairness, clip, extrapolate };
             monotone::MonotoneQuintic::new_with(&x[from..to], &y[from..to], &options, go_on)
         })?),
-        Kind::Quartic => Fits::Quartic(fit_rows(py, &bounds, |from, to, _| {
+        Kind::Quartic => Fits::Quartic(fit_rows(py, &bounds, |_, [from, to], _| {
             let (slopes, shape) = (of(from, to), shape.clone().unwrap_or_default());
             let options = QuarticOptions { slopes, shape, extrapolate };
             monotone::MonotoneQuartic::new(&x[from..to], &y[from..to], &options)
@@ -243,10 +255,10 @@ pub(crate) fn fit_many_monotone(
 fn fit_rows<F: Send>(
     py: Python<'_>,
     bounds: &[usize],
-    fit: impl Fn(usize, usize, GoOn<'_>) -> Result<F, MonotoneError> + Send + Sync,
+    fit: impl Fn(usize, [usize; 2], GoOn<'_>) -> Result<F, MonotoneError> + Send + Sync,
 ) -> PyResult<Vec<F>> {
     let (rows, size) = (bounds.len() - 1, bounds[bounds.len() - 1]);
-    fit_all(py, size, rows, |k, go_on| fit(bounds[k], bounds[k + 1], go_on))?.map_err(
+    fit_all(py, size, rows, |k, go_on| fit(k, [bounds[k], bounds[k + 1]], go_on))?.map_err(
         |(row, source)| monotone_error(&MonotoneError::InRow { row, source: Box::new(source) }),
     )
 }

@@ -6,7 +6,9 @@ use pyo3::{
     prelude::*,
     types::{PyList, PyTuple},
 };
-use shapespline::monotone::{Continuation, Ends, Extrapolation, Fairness, MonotoneError, Shape};
+use shapespline::monotone::{
+    Continuation, Convexity, Ends, Extrapolation, Fairness, MonotoneError, Shape,
+};
 
 use super::layout::Layout;
 use crate::{
@@ -21,7 +23,7 @@ pub(crate) fn column_error(error: &MonotoneError, layout: &Layout, k: usize) -> 
     if layout.is_one() {
         return refused.raise(error.to_string());
     }
-    if let (&[i], "y" | "slopes") = (&refused.index[..], refused.argument) {
+    if let (&[i], "y" | "slopes" | "convex") = (&refused.index[..], refused.argument) {
         refused.index = layout.index(k, i);
     }
     let place = joined(&refused.index);
@@ -35,6 +37,7 @@ pub(crate) fn column_error(error: &MonotoneError, layout: &Layout, k: usize) -> 
         MonotoneError::Slope { value, rule, .. } => {
             format!("slopes[{place}] {rule}, got {value}; clip=True limits such slopes")
         }
+        MonotoneError::Convex { value, rule, .. } => format!("convex[{place}] is {value}, {rule}"),
         MonotoneError::HeldSlope { argument: "slopes", value, rule, .. } => {
             format!("slopes[{place}] {rule}, got {value}")
         }
@@ -195,6 +198,67 @@ pub(crate) fn given_slopes(object: &Bound<'_, PyAny>) -> PyResult<Option<Given>>
         ));
     }
     numbers_of_y(object).map(Some)
+}
+
+/// `convex`: nothing, where the data are, or signs per interval.
+#[derive(Clone)]
+pub(crate) enum ConvexOption {
+    Nowhere,
+    Data,
+    Signs { values: Vec<i8>, shape: Vec<usize> },
+}
+
+impl ConvexOption {
+    /// What is asked of each of the `columns` of `n` points; one vector of signs is for all.
+    pub(crate) fn columns(
+        &self,
+        y: &Array<'_>,
+        axis: usize,
+        [columns, n]: [usize; 2],
+    ) -> PyResult<Vec<Option<Convexity>>> {
+        let Self::Signs { values, shape } = self else {
+            let one = matches!(self, Self::Data).then_some(Convexity::Data);
+            return Ok(vec![one; columns]);
+        };
+        let m = n.saturating_sub(1);
+        if *shape == [m] {
+            return Ok(vec![Some(Convexity::Signs(values.clone())); columns]);
+        }
+        let mut own = y.shape().to_vec();
+        own[axis] = m;
+        if *shape != own {
+            let rule =
+                format!("have one sign per interval: shape {} or {}", tuple(&[m]), tuple(&own));
+            return Err(must("convex", &[], rule, &shape[..]));
+        }
+        let inner: usize = own[axis + 1..].iter().product();
+        let sign = |k: usize, i: usize| values[(k / inner * m + i) * inner + k % inner];
+        let column = |k: usize| Convexity::Signs((0..m).map(|i| sign(k, i)).collect());
+        Ok((0..columns).map(|k| Some(column(k))).collect())
+    }
+}
+
+pub(crate) fn convex(object: &Bound<'_, PyAny>) -> PyResult<ConvexOption> {
+    if object.is_none() {
+        return Ok(ConvexOption::Nowhere);
+    }
+    if let Some(name) = text(object) {
+        return match name.as_str() {
+            "data" => Ok(ConvexOption::Data),
+            _ => Err(unknown("convex", &name, "None, 'data', an array of signs per interval")),
+        };
+    }
+    let given = array("convex", object)?;
+    let mut values = Vec::with_capacity(given.values().len());
+    for (i, &v) in given.values().iter().enumerate() {
+        values.push(match v {
+            1.0 => 1,
+            -1.0 => -1,
+            0.0 => 0,
+            _ => return Err(must("convex", &[i], "be -1, 0 or 1", v)),
+        });
+    }
+    Ok(ConvexOption::Signs { values, shape: given.shape().to_vec() })
 }
 
 /// `ends`: a name, or a pair of slopes, None where they are free.
