@@ -38,7 +38,8 @@ pub struct CubicOptions {
     pub slopes: Option<Vec<f64>>,
     /// The share of an interval beside a turn or a flat in which the second derivative falls to its value there, from 0
     /// to 1/4. With 0 the least energy itself, which is C¹ at turns and flats; with more it is C² everywhere. With
-    /// `convex` it is three eighths of this share, also beside points where convexity makes the least energy C¹.
+    /// `convex` it is three eighths of this share, also beside points where convexity makes the least energy C¹; the
+    /// energy is at most `1 + 3/8 layer` times the least.
     pub layer: f64,
     /// The share of the smallest secant of an interval and its neighbours below which the slope never falls there where
     /// the data are strictly monotone, from 0 to less than 1.

@@ -10,9 +10,13 @@
 //! **Continuity.** Beside such a point `y''` is led to a common value: 0, at turns the smaller one. It changes by c on
 //! three equal parts of length τ, linear on each, with `c = c₀, −5c₀/6, c₀/3, 0`: `∫ c = ∫ t c = 0`, so neither slopes
 //! nor values beyond feel it, nothing has to be solved again, and as c is orthogonal to lines the energy grows by
-//! `∫ c² = τ c₀²/2` exactly. Convex intervals stay convex: where c₀ takes y'' from z to between 0 and z, and the ramp is
-//! at least 8τ long, `y'' + c` is at least `(1 − 1/4 − 1/3) z > 0` at the knots. Elsewhere the slope falls by no more than
-//! `0.28 τ|c₀|` and, with `τ ≤ m/(8|z|)`, stays positive.
+//! `∫ c² = τ c₀²/2` exactly. With τ = θ/8 of the width w of the ramp (the interval, where it is one cubic) and |c₀| ≤ |z|
+//! that is at most `θ w z²/16`; the energy of a ramp is `w z²/3`, that of a cubic at least `w (z₀² + z₁²)/6`. So the whole
+//! is at most `1 + 3θ/8` times the least energy.
+//!
+//! Convex intervals stay convex: c₀ takes y'' from z to between 0 and z, and the ramp is at least 8τ long, so `y'' + c`
+//! is at least `(1 − 1/4 − 1/3) z > 0` at the knots. Elsewhere the slope falls by no more than `0.28 τ|c₀|` and, with
+//! `τ ≤ m/(8|z|)`, stays positive.
 
 use super::piece::{Level, Piece};
 use super::problem::{Problem, Slopes};
@@ -150,9 +154,10 @@ impl Profile {
             let Some(to) = to else { continue };
             let (z, slope) = (self.ends[end], m[i + end]);
             let by = to - z;
-            let mut tau = (share / PARTS * h).min(self.reach[end] / 8.0);
+            let mut tau = share / PARTS * self.reach[end];
             if problem.bend[i] == 0 && slope > c {
-                tau = (share / PARTS * h).min((slope - c) / (8.0 * z.abs()));
+                let reach = if self.level { self.reach[end] } else { h };
+                tau = (share / PARTS * reach).min((slope - c) / (8.0 * z.abs()));
             }
             // The slope of y'' away from the end; from the right end, slopes fall as they rise from the left.
             let gradient = self.gradient(end, h);
