@@ -39,6 +39,7 @@ def everything() -> list[object]:
         ss.polygon_shape(POINTS),
         ss.inflection_count([[0, 0], [1, 1], [2, 0], [3, 1]]),
         ss.MonotoneCubic(x, y),
+        ss.smooth_monotone(x, y).smoothing,
         ss.check_monotone(x, y, f),
         ss.check_monotone(x, y, f).segments[0],
         ss.MonotoneQuartic(x, y),

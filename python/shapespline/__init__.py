@@ -22,6 +22,7 @@ from shapespline._core import (
     MonotoneQuartic,
     MonotoneQuintic,
     MonotoneRows,
+    MonotoneSmoothing,
     MonotoneSpline,
     NuSpline,
     PiecewiseBezier,
@@ -37,6 +38,7 @@ from shapespline._core import (
     bezier_like,
     fit_many_monotone,
     minimal_bending,
+    smooth_monotone,
 )
 from shapespline._errors import ConvergenceError, InputError
 from shapespline._functions import check_monotone, fit_monotone, histospline
@@ -65,6 +67,7 @@ __all__ = [
     "MonotoneRecord",
     "MonotoneReport",
     "MonotoneRows",
+    "MonotoneSmoothing",
     "MonotoneSpline",
     "NodeRecord",
     "NuSpline",
@@ -95,4 +98,5 @@ __all__ = [
     "minimal_bending",
     "plot",
     "polygon_shape",
+    "smooth_monotone",
 ]

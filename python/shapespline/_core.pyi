@@ -28,6 +28,7 @@ __all__ = [
     "MonotoneQuartic",
     "MonotoneQuintic",
     "MonotoneRows",
+    "MonotoneSmoothing",
     "MonotoneSpline",
     "NuSpline",
     "PiecewiseBezier",
@@ -50,6 +51,7 @@ __all__ = [
     "bezier_like",
     "fit_many_monotone",
     "minimal_bending",
+    "smooth_monotone",
 ]
 
 _Floats = NDArray[np.float64]
@@ -631,6 +633,8 @@ class MonotoneCubic(MonotoneSpline):
     @property
     def lower_bound(self) -> float | _Floats: ...
     @property
+    def smoothing(self) -> MonotoneSmoothing | None: ...
+    @property
     def interval_gaps(self) -> _Floats: ...
 
 @final
@@ -669,6 +673,23 @@ class MonotoneQuintic(MonotoneSpline):
     def beta(self) -> _Floats: ...
     @property
     def energy(self) -> Literal["bending", "parametric"]: ...
+
+@final
+class MonotoneSmoothing:
+    @property
+    def penalty(self) -> float: ...
+    @property
+    def residual(self) -> float: ...
+    @property
+    def degrees_of_freedom(self) -> float: ...
+    @property
+    def increasing(self) -> bool: ...
+    @property
+    def steps(self) -> int: ...
+    @property
+    def converged(self) -> bool: ...
+    def __eq__(self, other: object, /) -> bool: ...
+    def __ne__(self, other: object, /) -> bool: ...
 
 @final
 class MonotoneDiagnostics:
@@ -768,6 +789,16 @@ def fit_many_monotone(
     shape: float | tuple[ArrayLike, ArrayLike] | None = None,
     extrapolate: _Extrapolate = "linear",
 ) -> MonotoneRows: ...
+def smooth_monotone(
+    x: ArrayLike,
+    y: ArrayLike,
+    *,
+    weights: ArrayLike | None = None,
+    residual: float | None = None,
+    penalty: Literal["gcv"] | float = "gcv",
+    increasing: bool | None = True,
+    bounds: tuple[float | None, float | None] | None = None,
+) -> MonotoneCubic: ...
 def minimal_bending(x: ArrayLike, y: ArrayLike) -> float | _Floats: ...
 def bezier_like(
     degree: Literal[3, 4, 5],

@@ -6,6 +6,7 @@ use crate::energy::Fairness;
 use crate::extrapolation::{Continuation, Extrapolation};
 use crate::interrupt::{GoOn, ask};
 use crate::quintic::{Diagnostics, Solver};
+use crate::smooth::Smoothing;
 use crate::spline::MonotoneSpline;
 use std::ops::{ControlFlow, Deref};
 
@@ -90,6 +91,7 @@ pub struct MonotoneCubic {
     level: Vec<usize>,
     lower_bound: f64,
     gaps: Vec<f64>,
+    smoothing: Option<Smoothing>,
 }
 
 impl Deref for MonotoneCubic {
@@ -190,6 +192,16 @@ impl MonotoneCubic {
         &self.gaps
     }
 
+    /// How noisy data were smoothed, of a function that [`crate::smooth_monotone`] made.
+    #[must_use]
+    pub fn smoothing(&self) -> Option<&Smoothing> {
+        self.smoothing.as_ref()
+    }
+
+    pub(crate) fn set_smoothing(&mut self, smoothing: Smoothing) {
+        self.smoothing = Some(smoothing);
+    }
+
     /// The interpolant without its diagnostics.
     #[must_use]
     pub fn spline(&self) -> &MonotoneSpline {
@@ -280,7 +292,7 @@ impl Task {
             let i = spline.segment_of_knot(i);
             return Err(out_of_range("second derivative", "y", i, y[i]));
         }
-        Ok(MonotoneCubic { spline, diagnostics, level, lower_bound, gaps })
+        Ok(MonotoneCubic { spline, diagnostics, level, lower_bound, gaps, smoothing: None })
     }
 
     /// Pieces of least energy with slopes m, and layers.

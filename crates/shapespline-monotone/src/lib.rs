@@ -86,5 +86,5 @@ pub use many::{MonotoneMany, fit_columns, fit_rows};
 pub use piecewise::PiecewisePolynomial;
 pub use quartic::{MonotoneQuartic, QuarticOptions, Shape};
 pub use quintic::{Diagnostics, MonotoneQuintic, QuinticOptions, Slopes, Solver};
-pub use smooth::{PenaltyChoice, SmoothOptions, SmoothedMonotone, Smoothing, smooth_monotone};
+pub use smooth::{PenaltyChoice, SmoothOptions, Smoothing, smooth_monotone, smooth_monotone_with};
 pub use spline::MonotoneSpline;

@@ -18,7 +18,7 @@ use crate::extrapolation::Extrapolation;
 use crate::interrupt::ask;
 use input::Input;
 use penalty::{LINE, Optima};
-use std::ops::{ControlFlow, Deref};
+use std::ops::ControlFlow;
 
 mod finish;
 mod input;
@@ -71,7 +71,7 @@ impl Default for SmoothOptions {
     }
 }
 
-/// How the smoothing went.
+/// How the smoothing went ([`MonotoneCubic::smoothing`]).
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Smoothing {
@@ -89,24 +89,8 @@ pub struct Smoothing {
     pub converged: bool,
 }
 
-/// A monotone smoothing function, which dereferences to the [`MonotoneCubic`], and how it was found.
-#[derive(Debug, Clone)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct SmoothedMonotone {
-    /// The function: of all monotone ones through its values at the data that of least energy.
-    pub function: MonotoneCubic,
-    /// How it was found.
-    pub smoothing: Smoothing,
-}
-
-impl Deref for SmoothedMonotone {
-    type Target = MonotoneCubic;
-    fn deref(&self) -> &MonotoneCubic {
-        &self.function
-    }
-}
-
-/// The monotone function of least `Σ w(y − f(x))² + λ ∫f''² dx`. O(N) per step of some 20.
+/// The monotone function of least `Σ w(y − f(x))² + λ ∫f''² dx`, through its values at the data: its
+/// [`MonotoneCubic::smoothing`] says how it was found. O(N) per step of some 20.
 ///
 /// `x` must not decrease. Data at equal abscissae, or at ones nearer than 2⁻³⁰ of their range, are merged: their weights
 /// are added and their weighted means taken. Where monotonicity is no constraint the function is the smoothing spline.
@@ -128,53 +112,55 @@ pub fn smooth_monotone(
     x: &[f64],
     y: &[f64],
     options: &SmoothOptions,
-) -> Result<SmoothedMonotone, MonotoneError> {
-    SmoothedMonotone::new_with(x, y, options, &|| ControlFlow::Continue(()))
+) -> Result<MonotoneCubic, MonotoneError> {
+    smooth_monotone_with(x, y, options, &|| ControlFlow::Continue(()))
 }
 
-impl SmoothedMonotone {
-    /// As [`smooth_monotone`], with a function that is called regularly; return `Break` to cancel.
-    ///
-    /// # Errors
-    /// As [`smooth_monotone`], and [`MonotoneError::Interrupted`] if cancelled.
-    pub fn new_with(
-        x: &[f64],
-        y: &[f64],
-        options: &SmoothOptions,
-        go_on: &(dyn Fn() -> ControlFlow<()> + Sync),
-    ) -> Result<Self, MonotoneError> {
-        let input = Input::new(x, y, options)?;
-        ask(go_on)?;
-        let mut optima = Optima::new(&input, go_on);
-        let lambda = match options.penalty {
-            PenaltyChoice::CrossValidated => optima.cross_validated()?,
-            PenaltyChoice::Fixed(penalty) => input.penalty_in(penalty),
-            PenaltyChoice::FromResidual(residual) => {
-                optima.of_residual(input.residual_in(residual), residual)?
-            }
-        };
-        let optimum = optima.at(lambda)?;
-        let freedom = optima.freedom(lambda, &optimum);
-        let mut f = Vec::new();
-        input.task.values(optimum.first, &optimum.sizes, &mut f);
-        let values = input.values_out(&f);
-        let rises = &optimum.sizes[..input.task.h.len()];
-        let data = [&input.x[..], &values[..]];
-        let function =
-            MonotoneCubic::through(data, rises, input.ey, input.sign, options.extrapolate, go_on)?;
-        let penalty = match options.penalty {
-            PenaltyChoice::Fixed(penalty) => penalty,
-            _ if lambda >= LINE => f64::INFINITY,
-            _ => input.penalty_out(lambda),
-        };
-        let smoothing = Smoothing {
-            penalty,
-            residual: input.residual_out(optimum.residual + input.within),
-            degrees_of_freedom: freedom,
-            increasing: input.sign > 0.0,
-            steps: optimum.steps,
-            converged: optimum.converged && function.diagnostics().converged,
-        };
-        Ok(Self { function, smoothing })
+/// As [`smooth_monotone`], with a function that is called regularly; return `Break` to cancel.
+///
+/// # Errors
+/// As [`smooth_monotone`], and [`MonotoneError::Interrupted`] if cancelled.
+pub fn smooth_monotone_with(
+    x: &[f64],
+    y: &[f64],
+    options: &SmoothOptions,
+    go_on: &(dyn Fn() -> ControlFlow<()> + Sync),
+) -> Result<MonotoneCubic, MonotoneError> {
+    let input = Input::new(x, y, options)?;
+    ask(go_on)?;
+    let mut optima = Optima::new(&input, go_on);
+    let lambda = match options.penalty {
+        PenaltyChoice::CrossValidated => optima.cross_validated()?,
+        PenaltyChoice::Fixed(penalty) => input.penalty_in(penalty),
+        PenaltyChoice::FromResidual(residual) => {
+            optima.of_residual(input.residual_in(residual), residual)?
+        }
+    };
+    let optimum = optima.at(lambda)?;
+    let degrees_of_freedom = optima.freedom(lambda, &optimum);
+    let (mut f, rises) = (Vec::new(), input.task.h.len());
+    input.task.values(optimum.first, &optimum.sizes, &mut f);
+    if optimum.held[input.task.layout().high()] {
+        // The sum of the rises is on the bound but for rounding.
+        let level = optimum.sizes[..rises].iter().rev().take_while(|d| **d == 0.0).count();
+        f[rises - level..].fill(input.task.bounds[1]);
     }
+    let values = input.values_out(&f);
+    let (rises, data) = (&optimum.sizes[..rises], [&input.x[..], &values[..]]);
+    let (unit, sign) = (input.ey, input.sign);
+    let mut function = MonotoneCubic::through(data, rises, unit, sign, options.extrapolate, go_on)?;
+    let penalty = match options.penalty {
+        PenaltyChoice::Fixed(penalty) => penalty,
+        _ if lambda >= LINE => f64::INFINITY,
+        _ => input.penalty_out(lambda),
+    };
+    function.set_smoothing(Smoothing {
+        penalty,
+        residual: input.residual_out(optimum.residual + input.within),
+        degrees_of_freedom,
+        increasing: sign > 0.0,
+        steps: optimum.steps,
+        converged: optimum.converged && function.diagnostics().converged,
+    });
+    Ok(function)
 }

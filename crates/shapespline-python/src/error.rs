@@ -238,19 +238,23 @@ impl From<&MonotoneError> for Refused {
                 Self::new(argument, [index], value)
             }
             MonotoneError::Slope { index, value, .. } => Self::new("slopes", [index], value),
-            MonotoneError::HeldSlope { argument, index, value, .. } => {
+            MonotoneError::HeldSlope { argument, index, value, .. }
+            | MonotoneError::Entry { argument, index, value, .. } => {
                 Self::new(argument, [index], value)
             }
             MonotoneError::Convex { index, value, .. } => {
                 Self::new("convex", [index], i64::from(value))
             }
-            MonotoneError::Share { argument, value, .. } => Self::new(argument, [], value),
+            MonotoneError::Share { argument, value, .. }
+            | MonotoneError::Number { argument, value, .. } => Self::new(argument, [], value),
             MonotoneError::NotIncreasing { index, value, .. } => Self::new("x", [index], value),
             MonotoneError::TooFew { argument, found, .. }
             | MonotoneError::Length { argument, found, .. } => Self::new(argument, [], found),
             MonotoneError::UnknownOption { argument, ref value, .. } => {
                 Self::new(argument, [], value.as_str())
             }
+            MonotoneError::Residual { value, .. } => Self::new("residual", [], value),
+            MonotoneError::Distinct { found } => Self::new("x", [], found),
             MonotoneError::NotInvertible { index, value } => Self::new("y", [index], value),
             MonotoneError::InRow { row, ref source } => Self::from(&**source).within(row),
             MonotoneError::Offset { index, value, .. } => Self::new("offsets", [index], value),

@@ -15,7 +15,9 @@ use crate::{
     error::{Value, invalid},
     fair_diagnostics::{FairDiagnostics, FairStep},
     fairness::Fairness,
-    monotone::{Fits, Layout, MonotoneDiagnostics, PiecewisePolynomial, PiecewiseRows},
+    monotone::{
+        Fits, Layout, MonotoneDiagnostics, MonotoneSmoothing, PiecewisePolynomial, PiecewiseRows,
+    },
     piecewise::PiecewiseBezier,
     report::{ShapeRecord, ShapeReport, Subject},
     tangents::Tangents,
@@ -44,10 +46,11 @@ pub(crate) enum Kind {
     Fairness,
     FairDiagnostics,
     FairStep,
+    MonotoneSmoothing,
 }
 
 impl Kind {
-    const ALL: [(Self, &'static str); 13] = [
+    const ALL: [(Self, &'static str); 14] = [
         (Self::Curve, "a curve"),
         (Self::Report, "a ShapeReport"),
         (Self::PiecewiseBezier, "a PiecewiseBezier"),
@@ -61,6 +64,7 @@ impl Kind {
         (Self::Fairness, "Fairness"),
         (Self::FairDiagnostics, "FairDiagnostics"),
         (Self::FairStep, "a FairStep"),
+        (Self::MonotoneSmoothing, "a MonotoneSmoothing"),
     ];
 }
 
@@ -178,6 +182,7 @@ pub(crate) fn _from_bytes<'py>(py: Python<'py>, data: &[u8]) -> PyResult<Bound<'
         Kind::Fairness => whole::<Fairness>(bytes)?.into_bound_py_any(py),
         Kind::FairDiagnostics => whole::<FairDiagnostics>(bytes)?.into_bound_py_any(py),
         Kind::FairStep => whole::<FairStep>(bytes)?.into_bound_py_any(py),
+        Kind::MonotoneSmoothing => whole::<MonotoneSmoothing>(bytes)?.into_bound_py_any(py),
     }
 }
 

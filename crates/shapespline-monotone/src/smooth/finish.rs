@@ -8,6 +8,8 @@
 use super::interior::{State, Task};
 use super::interval::Model;
 use super::system::{HELD, Layout, System};
+use crate::MonotoneError;
+use crate::interrupt::{GoOn, ask};
 
 const STEPS: usize = 15;
 /// The part of a step below which it is none.
@@ -22,6 +24,8 @@ const ALLOWANCE: f64 = 1e-13;
 const TINY_ROOT: f64 = 1e-160;
 /// Changes of what is held, and the part of its first size below which a free rise has fallen to 0.
 const ROUNDS: usize = 6;
+/// Solves after which what is held no longer changes: the interior point has come near enough as it is.
+const SOLVES: usize = 20;
 /// Ratios of rises to multipliers beyond which it is clear what is 0; the least share of a multiplier in the push.
 const CLEAR: f64 = 30.0;
 const LEAST_SHARE: f64 = 0.01;
@@ -60,7 +64,8 @@ pub(super) fn finish(
     lambda: f64,
     near: &State,
     system: &mut System,
-) -> Option<Optimum> {
+    go_on: GoOn<'_>,
+) -> Result<Option<Optimum>, MonotoneError> {
     let layout = task.layout();
     let mut newton = Newton::new(task, lambda);
     newton.evaluate(near.first, &near.sizes);
@@ -79,27 +84,35 @@ pub(super) fn finish(
                 sizes[k] = near.sizes[k];
             }
         }
-        let (solves, ended) = newton.run(&mut first, &mut sizes, system);
+        let (solves, ended) = newton.run(&mut first, &mut sizes, system, go_on)?;
         steps += solves;
         let (rise, size) = newton.rise(&before.0, &before.1);
         let better = rise <= ALLOWANCE * size && newton.is_between();
         // The sizes that `wrong` proposes are for another round.
         let answer = sizes.clone();
         let wrong = if ended { newton.wrong(&mut sizes) } else { Vec::new() };
-        if !wrong.is_empty() && round < ROUNDS {
+        let last = round == ROUNDS || steps - near.steps >= SOLVES;
+        if !wrong.is_empty() && !last {
             for k in wrong {
                 newton.held[k] = !newton.held[k];
             }
             hold_slopes(&mut newton.held, layout);
         } else if !better {
-            return None;
+            return Ok(None);
         } else {
             let residual = task.residual(&newton.f);
             let held = newton.held;
-            return Some(Optimum { first, sizes: answer, held, residual, steps, converged: true });
+            return Ok(Some(Optimum {
+                first,
+                sizes: answer,
+                held,
+                residual,
+                steps,
+                converged: true,
+            }));
         }
     }
-    None
+    Ok(None)
 }
 
 /// Sizes that are 0 at the optimum: rises, the slopes at their ends, distances from bounds; and the products of rises
@@ -160,7 +173,13 @@ impl<'a> Newton<'a> {
     }
 
     /// Newton's steps until they are small; how many, and whether they became so.
-    fn run(&mut self, first: &mut f64, sizes: &mut Vec<f64>, system: &mut System) -> (usize, bool) {
+    fn run(
+        &mut self,
+        first: &mut f64,
+        sizes: &mut Vec<f64>,
+        system: &mut System,
+        go_on: GoOn<'_>,
+    ) -> Result<(usize, bool), MonotoneError> {
         let (layout, h) = (self.layout, &self.task.h);
         let twice = self.task.twice();
         let (mut stiff, mut beside) = (vec![0.0; layout.len()], vec![0.0; layout.len()]);
@@ -168,11 +187,12 @@ impl<'a> Newton<'a> {
         self.evaluate(*first, sizes);
         let mut last = f64::INFINITY;
         for solves in 1..=STEPS {
+            ask(go_on)?;
             self.constrain(sizes, &mut stiff, &mut beside);
             system.factor(h, &self.models, &twice, &stiff);
             system.solve(h, &self.models, &self.pull, &beside, &mut step);
             let Some(largest) = self.advance(first, sizes, &step) else {
-                return (solves, false);
+                return Ok((solves, false));
             };
             if self.hold_collapsed(sizes, &start) {
                 self.evaluate(*first, sizes);
@@ -181,11 +201,11 @@ impl<'a> Newton<'a> {
             }
             // It converges quadratically until only rounding errors are left.
             if largest <= ENOUGH || (largest <= NEEDED && largest > 0.25 * last) {
-                return (solves, true);
+                return Ok((solves, true));
             }
             last = largest;
         }
-        (STEPS, false)
+        Ok((STEPS, false))
     }
 
     /// Stiffness and gradient of what is held or keeps its product with its multiplier.

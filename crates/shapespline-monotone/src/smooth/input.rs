@@ -122,11 +122,21 @@ impl Input {
         PowerOfTwo::new(self.ew + 2 * self.ey).scale(residual)
     }
 
-    /// Scaled values in the data's units, between the bounds.
+    /// Scaled values in the data's units, between the bounds, and on them exactly where they are on the scaled ones.
     pub(super) fn values_out(&self, f: &[f64]) -> Vec<f64> {
         let unit = PowerOfTwo::new(self.ey);
-        let [low, high] = self.bounds;
-        f.iter().map(|f| (self.base + self.sign * unit.scale(*f)).max(low).min(high)).collect()
+        let ([lowest, highest], [low, high]) = (self.task.bounds, self.bounds);
+        let [first, last] = if self.sign > 0.0 { [low, high] } else { [high, low] };
+        let value = |f: &f64| {
+            if *f <= lowest {
+                first
+            } else if *f >= highest {
+                last
+            } else {
+                (self.base + self.sign * unit.scale(*f)).max(low).min(high)
+            }
+        };
+        f.iter().map(value).collect()
     }
 }
 

@@ -223,22 +223,22 @@ pub(super) fn minimise(
         }
         system.factor(&task.h, &models, &twice, &stiff);
         system.solve(&task.h, &models, &pull, &nothing, &mut predicted);
-        let reach = state.reach(&predicted, &nothing).min(1.0);
+        let products = (&state.sizes[..], &state.multipliers[..]);
+        let part = reach(products, &stiff, &predicted, &nothing).min(1.0);
         let mu = product / count;
-        let ahead = state.ahead(&predicted, reach) / count;
+        let ahead = ahead(products, &stiff, &predicted, part) / count;
         let centre = (ahead / mu).powi(3).max(1e-4) * mu;
-        for (k, target) in targets.iter_mut().enumerate() {
-            // The wanted product, less what the predicted step would add to it.
+        for k in 0..layout.len() {
+            // The wanted product over the size, less what the predicted step would add to it: the gradient's other sign.
             let (v, z, by) = (state.sizes[k], state.multipliers[k], predicted[k]);
-            *target = centre + reach * reach * by * z * (1.0 + by / v);
-            if v == FAR {
-                *target = 0.0;
-            }
-            sizes[k] = -*target / v;
+            let wanted = (centre + part * part * by * (z + stiff[k] * by)) / v;
+            targets[k] = if v == FAR { 0.0 } else { wanted };
+            sizes[k] = -targets[k];
         }
         system.solve(&task.h, &models, &pull, &sizes, &mut step);
-        let reach = (FRACTION * state.reach(&step, &targets)).min(1.0);
-        state.advance(&step, reach, &targets);
+        let products = (&state.sizes[..], &state.multipliers[..]);
+        let part = (FRACTION * reach(products, &stiff, &step, &targets)).min(1.0);
+        state.advance(&stiff, &step, part, &targets);
         state.steps += 1;
     }
 }
@@ -247,51 +247,46 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
+/// How far a step can go before a size or a multiplier is 0; at most 1 over [`FRACTION`]. The step of a multiplier is
+/// `target − z − z/v·step`, with a target that is the wanted product over the size.
+fn reach(
+    (sizes, multipliers): (&[f64], &[f64]),
+    stiff: &[f64],
+    step: &[f64],
+    targets: &[f64],
+) -> f64 {
+    let mut most = FRACTION;
+    for k in 0..step.len() {
+        let (v, z) = (sizes[k], multipliers[k]);
+        // Shares that one whole step takes away of the size and of the multiplier.
+        most = most.max(-step[k] / v);
+        let down = z + stiff[k] * step[k] - targets[k];
+        most = most.max(if z > 0.0 { down / z } else { 0.0 });
+    }
+    1.0 / most
+}
+
+/// The sum of products after a part of the predicted step, that of target 0.
+fn ahead((sizes, multipliers): (&[f64], &[f64]), stiff: &[f64], step: &[f64], part: f64) -> f64 {
+    let mut sum = 0.0;
+    for k in 0..step.len() {
+        let (v, z, by) = (sizes[k], multipliers[k], step[k]);
+        let product = (v + part * by) * (z - part * (z + stiff[k] * by));
+        sum += if v == FAR { 0.0 } else { product };
+    }
+    sum
+}
+
 impl State {
-    /// The step of the multiplier of size k for a wanted product.
-    #[inline(always)]
-    fn multiplier_step(&self, k: usize, by: f64, target: f64) -> f64 {
-        let (v, z) = (self.sizes[k], self.multipliers[k]);
-        target / v - z - z / v * by
-    }
-
-    /// How far a step can go before a size or a multiplier is 0; at most 1 over [`FRACTION`].
-    fn reach(&self, step: &[f64], targets: &[f64]) -> f64 {
-        let mut reach = 1.0 / FRACTION;
-        for (k, &by) in step.iter().enumerate() {
-            let (v, z) = (self.sizes[k], self.multipliers[k]);
-            let dz = self.multiplier_step(k, by, targets[k]);
-            if by < 0.0 && v < -by * reach {
-                reach = v / -by;
-            }
-            if dz < 0.0 && z < -dz * reach {
-                reach = z / -dz;
-            }
-        }
-        reach
-    }
-
-    /// The sum of products after a part of the predicted step, that of target 0.
-    fn ahead(&self, step: &[f64], reach: f64) -> f64 {
-        let reach = reach.min(1.0);
-        let product = |(k, by): (usize, &f64)| {
-            let dz = self.multiplier_step(k, *by, 0.0);
-            let v = self.sizes[k];
-            if v == FAR { 0.0 } else { (v + reach * by) * (self.multipliers[k] + reach * dz) }
-        };
-        step.iter().enumerate().map(product).sum()
-    }
-
-    fn advance(&mut self, step: &[f64], reach: f64, targets: &[f64]) {
+    fn advance(&mut self, stiff: &[f64], step: &[f64], part: f64, targets: &[f64]) {
         let low = self.sizes.len() - 2;
-        self.first += reach * step[low];
-        for (k, by) in step.iter().enumerate() {
-            if self.sizes[k] == FAR {
-                continue;
+        self.first += part * step[low];
+        for k in 0..step.len() {
+            let (v, z) = (self.sizes[k], self.multipliers[k]);
+            if v != FAR {
+                self.sizes[k] = v + part * step[k];
+                self.multipliers[k] = z + part * (targets[k] - z - stiff[k] * step[k]);
             }
-            let dz = self.multiplier_step(k, *by, targets[k]);
-            self.multipliers[k] += reach * dz;
-            self.sizes[k] += reach * by;
         }
     }
 }

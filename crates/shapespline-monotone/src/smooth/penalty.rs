@@ -49,7 +49,7 @@ impl<'a> Optima<'a> {
             return Ok(self.without_finish(&state, true));
         }
         let state = minimise(task, lambda, None, GAP, &mut self.system, self.go_on)?;
-        let mut found = finish(task, lambda, &state, &mut self.system)
+        let mut found = finish(task, lambda, &state, &mut self.system, self.go_on)?
             .unwrap_or_else(|| self.without_finish(&state, true));
         found.converged &= state.gap <= GAP;
         Ok(found)

@@ -44,7 +44,7 @@ impl Layout {
 /// The triangular factor, and room for right-hand sides.
 pub(super) struct System {
     layout: Layout,
-    /// Of every interval: `r₀₀, r₀₁, r₁₁`, then `r₀, r₁` in m' and in f'.
+    /// Of every interval: `1/r₀₀, r₀₁, 1/r₁₁`, then `r₀, r₁` in m' and in f'.
     rows: Vec<[f64; 7]>,
     /// Rows of the last node: a, b, c.
     end: [f64; 3],
@@ -73,7 +73,7 @@ impl System {
             if i == layout.n {
                 on_value += stiff[layout.high()];
             }
-            add(&mut carry, (stiff[layout.m(i)] + extra).sqrt(), on_value.sqrt());
+            add(&mut carry, stiff[layout.m(i)] + extra, on_value);
             if i < layout.n {
                 let model = &models[i];
                 let mut rows = interval_rows(&carry, model, h[i], stiff[i].sqrt());
@@ -98,7 +98,7 @@ impl System {
         for i in 0..layout.n {
             pm += sizes[layout.m(i)];
             pf += values[i];
-            let [r00, r01, r11, r0m, r0f, r1m, r1f] = self.rows[i];
+            let [i00, r01, i11, r0m, r0f, r1m, r1f] = self.rows[i];
             let ([a, b, c], by, h) = (models[i].gradient, sizes[i], h[i]);
             let (g0, g1);
             if models[i].level {
@@ -108,8 +108,8 @@ impl System {
                 (g0, g1) = (a + by - pf, b - pm + 0.5 * h * (pf - by));
                 pm += h * (by - pf);
             }
-            let q0 = g0 / r00;
-            let q1 = (g1 - r01 * q0) / r11;
+            let q0 = g0 * i00;
+            let q1 = (g1 - r01 * q0) * i11;
             self.eliminated[i] = [q0, q1];
             pm -= r0m * q0 + r1m * q1;
             pf -= r0f * q0 + r1f * q1;
@@ -123,10 +123,10 @@ impl System {
         step[layout.high()] = -f;
         step[layout.m(layout.n)] = m;
         for i in (0..layout.n).rev() {
-            let [r00, r01, r11, r0m, r0f, r1m, r1f] = self.rows[i];
+            let [i00, r01, i11, r0m, r0f, r1m, r1f] = self.rows[i];
             let [q0, q1] = self.eliminated[i];
-            let u1 = (-q1 - r1m * m - r1f * f) / r11;
-            let u0 = (-q0 - r01 * u1 - r0m * m - r0f * f) / r00;
+            let u1 = (-q1 - r1m * m - r1f * f) * i11;
+            let u0 = (-q0 - r01 * u1 - r0m * m - r0f * f) * i00;
             let d = if models[i].level { u0 } else { u0 + h[i] * (m - 0.5 * u1) };
             m = if models[i].level { u1 } else { m - u1 };
             f -= d;
@@ -147,12 +147,11 @@ impl System {
         let mut variances = vec![0.0; n + 1];
         variances[n] = cov[2];
         for i in (0..n).rev() {
-            let [r00, r01, r11, r0m, r0f, r1m, r1f] = self.rows[i];
+            let [i00, r01, i11, r0m, r0f, r1m, r1f] = self.rows[i];
             // u = −G x' + K ξ with unit ξ.
-            let g1 = [r1m / r11, r1f / r11];
-            let g0 = [(r0m - r01 * g1[0]) / r00, (r0f - r01 * g1[1]) / r00];
-            let k1 = [0.0, 1.0 / r11];
-            let k0 = [1.0 / r00, -r01 / (r00 * r11)];
+            let g1 = [r1m * i11, r1f * i11];
+            let g0 = [(r0m - r01 * g1[0]) * i00, (r0f - r01 * g1[1]) * i00];
+            let (k1, k0) = ([0.0, i11], [i00, -r01 * i00 * i11]);
             // The state before in the one behind and ξ.
             let (mx, fx, mk, fk);
             if models[i].level {
@@ -182,17 +181,18 @@ impl System {
     }
 }
 
-/// Rows `(on_slope, 0)` and `(0, on_value)` more.
+/// Rows `(√on_slope, 0)` and `(0, √on_value)` more.
 #[inline(always)]
 fn add(carry: &mut [f64; 3], on_slope: f64, on_value: f64) {
     let [a, b, c] = *carry;
     let mut left = 0.0;
     if on_slope > 0.0 {
-        let size = hypot(a, on_slope);
-        let (cos, sin) = (a / size, on_slope / size);
-        (carry[0], carry[1], left) = (size, cos * b, sin * b);
+        let size = (a * a + on_slope).sqrt();
+        let cos = a / size;
+        // Of b the share that the new row takes over: sin² = on_slope/size².
+        (carry[0], carry[1], left) = (size, cos * b, b * b * (on_slope / size / size));
     }
-    carry[2] = hypot(hypot(c, left), on_value);
+    carry[2] = (c * c + left + on_value).sqrt();
 }
 
 #[inline(always)]
@@ -231,7 +231,7 @@ fn eliminate(rows: &mut Rows) -> ([f64; 7], [f64; 3]) {
     reflect(rows, 2);
     let c = hypot(rows[3][3], rows[4][3]);
     let [[r00, r01, r0m, r0f], [_, r11, r1m, r1f], [_, _, a, b], _, _] = *rows;
-    ([r00, r01, r11, r0m, r0f, r1m, r1f], [a, b, c])
+    ([1.0 / r00, r01, 1.0 / r11, r0m, r0f, r1m, r1f], [a, b, c])
 }
 
 /// Reflect the rows from k on so that in column k only row k is not 0.

@@ -7,6 +7,7 @@ use super::{
     families::{Data, object},
     fits::Fits,
     options::{self, ConvexOption, Given},
+    smooth::MonotoneSmoothing,
     spline::MonotoneSpline,
 };
 use crate::output::shaped;
@@ -140,6 +141,13 @@ impl MonotoneCubic {
         let base = slf.as_super().as_super().get();
         let Fits::Cubic(fits) = base.fits.as_ref() else { return base.each(slf.py(), Vec::new()) };
         base.each(slf.py(), fits.iter().map(monotone::MonotoneCubic::lower_bound).collect())
+    }
+
+    /// How noisy data were smoothed: `MonotoneSmoothing` for the result of `smooth_monotone`, None otherwise.
+    #[getter]
+    fn smoothing(slf: &Bound<'_, Self>) -> Option<MonotoneSmoothing> {
+        let Fits::Cubic(fits) = slf.as_super().as_super().get().fits.as_ref() else { return None };
+        fits[0].smoothing().map(MonotoneSmoothing::of)
     }
 
     /// By how much the energy of every interval exceeds its part of ``lower_bound`` at most, without layers:

@@ -60,6 +60,11 @@ impl<'py> Data<'py> {
         copy
     }
 
+    /// Whether y has one axis.
+    pub(super) fn is_one(&self) -> bool {
+        self.layout.is_one()
+    }
+
     pub(super) fn into_layout(self) -> Layout {
         self.layout
     }

@@ -22,6 +22,7 @@ mod options;
 mod places;
 mod row_calculus;
 mod rows;
+mod smooth;
 mod spline;
 
 pub(crate) use diagnostics::MonotoneDiagnostics;
@@ -29,6 +30,7 @@ pub(crate) use fits::Fits;
 pub(crate) use function::PiecewisePolynomial;
 pub(crate) use layout::Layout;
 pub(crate) use rows::PiecewiseRows;
+pub(crate) use smooth::MonotoneSmoothing;
 
 /// Adds the classes and functions of this part to the module.
 pub(crate) fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
@@ -38,9 +40,11 @@ pub(crate) fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<families::MonotoneQuartic>()?;
     module.add_class::<families::MonotoneQuintic>()?;
     module.add_class::<diagnostics::MonotoneDiagnostics>()?;
+    module.add_class::<smooth::MonotoneSmoothing>()?;
     module.add_class::<rows::PiecewiseRows>()?;
     module.add_class::<rows::MonotoneRows>()?;
     module.add_function(wrap_pyfunction!(cubic::minimal_bending, module)?)?;
+    module.add_function(wrap_pyfunction!(smooth::smooth_monotone, module)?)?;
     module.add_function(wrap_pyfunction!(many::fit_many_monotone, module)?)?;
     module.add_function(wrap_pyfunction!(bezier_like::bezier_like, module)?)?;
     document_call::<function::PiecewisePolynomial>(module.py())?;
