@@ -40,6 +40,7 @@ MAKERS: dict[str, Maker] = {
     '`MonotoneCubic`, `ends="natural"`, `layer=0`': partial(
         ss.MonotoneCubic, ends="natural", layer=0
     ),
+    '`MonotoneCubic`, `convex="data"`': partial(ss.MonotoneCubic, convex="data"),
     "`MonotoneQuintic`": ss.MonotoneQuintic,
     "`MonotoneQuartic`": ss.MonotoneQuartic,
     "PCHIP": PchipInterpolator,
@@ -60,7 +61,7 @@ SMOOTH: dict[str, Callable[[Array], Array]] = {
     "logistic": lambda x: 1 / (1 + np.exp(-12 * (x - 0.5))),
 }
 #: Points and queries, and repetitions of which the fastest counts, in the measurement of time.
-POINTS, QUERIES, REPEATS = (1_000, 100_000), 1_000_000, 7
+POINTS, QUERIES, REPEATS = (1_000, 100_000), 1_000_000, 11
 
 
 def rough(rng: np.random.Generator) -> tuple[Array, Array]:
@@ -190,7 +191,8 @@ def times() -> dict[str, list[str]]:
             seconds[i] = np.minimum(seconds[i], [elapsed(call) for call in calls])
     ratios = seconds / seconds[list(MAKERS).index("PCHIP")]
     return {
-        name: [f"{r:.2g}" for r in row] for name, row in zip(MAKERS, ratios.tolist(), strict=True)
+        name: [f"{float(f'{r:.2g}'):g}" for r in row]
+        for name, row in zip(MAKERS, ratios.tolist(), strict=True)
     }
 
 

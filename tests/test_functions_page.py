@@ -85,6 +85,10 @@ def test_the_summaries_repeat_the_page(script):
     rates = {cells[0]: cells for cells in printed(script, "rates")}
     chapter = ROOT / "python" / "docs" / "monotone.md"
     assert cells_of(chapter, "energy over the least") == [made[m][2] for m in makers]
+    parts = [numbers(made[m][4]) for m in makers]
+    broken = [float(cell.split()[0]) for cell in cells_of(chapter, "convex segments broken")]
+    assert broken == [round(100 * bad / asked) for bad, asked in parts]
+    assert made['`MonotoneCubic`, `convex="data"`'][4].startswith("0 of")
     orders = [rates[m][2] for m in makers]
     assert [f"{float(cell):.1f}" for cell in cells_of(chapter, "order of accuracy")] == orders
     times = [float(cell.split()[0]) for cell in cells_of(chapter, "time of a fit")]
