@@ -99,17 +99,6 @@ pub(super) fn check_smooth(f: &MonotoneCubic, x: &[f64], y: &[f64], c2: bool) {
     }
 }
 
-impl MonotoneCubic {
-    pub(super) fn seconds(&self) -> Vec<[f64; 2]> {
-        match &self.spline.kind {
-            crate::spline::Kind::Cubic { z } => {
-                z.iter().map(|z| z.map(|z| self.spline.units.derivative_out(z, 2))).collect()
-            }
-            _ => panic!("cubic"),
-        }
-    }
-}
-
 /// Whether the second derivative has a sign on interval i, and the slope goes its way: at 200 places.
 fn check_sign(f: &MonotoneCubic, x: &[f64], i: usize, sign: i8, about: &str) {
     let secant = (f.y()[i + 1] - f.y()[i]).abs() / (x[i + 1] - x[i]);

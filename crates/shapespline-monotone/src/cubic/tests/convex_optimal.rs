@@ -3,6 +3,17 @@ use super::convex::*;
 use super::*;
 use crate::reference::quadratic;
 
+impl MonotoneCubic {
+    pub(super) fn seconds(&self) -> Vec<[f64; 2]> {
+        match &self.spline.kind {
+            crate::spline::Kind::Cubic { z } => {
+                z.iter().map(|z| z.map(|z| self.spline.units.derivative_out(z, 2))).collect()
+            }
+            _ => panic!("cubic"),
+        }
+    }
+}
+
 /// Weak duality: for second derivatives p at the points, 0 at free ends, every convex function through the data has at
 /// least the energy `Σ 2(p₀ − p₁)δ − ∫ (line from p₀ to p₁)₊²`.
 #[test]
