@@ -11,6 +11,8 @@ use crate::interrupt::GoOn;
 
 /// The relative gap at which the interior point hands over to Newton's method.
 const GAP: f64 = 1e-12;
+/// The stiffness of a held value that makes degrees of freedom exact to 8 digits at least.
+const HELD_VALUE: f64 = 1e16;
 /// Scaled penalties from which the function is a straight line.
 pub(super) const LINE: f64 = 1e12;
 /// Scaled penalties below which rounding hides that the function is not the isotonic regression's.
@@ -85,7 +87,7 @@ impl<'a> Optima<'a> {
         let task = &self.input.task;
         let layout = task.layout();
         let held = &optimum.held;
-        if lambda < NOTHING || self.input.rigid {
+        if lambda < NOTHING || self.input.rigid || held[..layout.n].iter().all(|held| *held) {
             // One for every block, but for those at the bounds.
             let rises = held[..layout.n].iter().filter(|held| !**held).count() as f64;
             let at = |k: usize| f64::from(u8::from(held[k]));
@@ -100,7 +102,11 @@ impl<'a> Optima<'a> {
             Model::new(lambda, m, optimum.sizes[i], task.h[i])
         };
         let models: Vec<Model> = (0..layout.n).map(model).collect();
-        let stiff: Vec<f64> = held.iter().map(|held| if *held { HELD } else { 0.0 }).collect();
+        let mut stiff: Vec<f64> = held.iter().map(|held| if *held { HELD } else { 0.0 }).collect();
+        for k in [layout.low(), layout.high()] {
+            // Bounds at both ends meet in the middle, where larger numbers would hide the rest.
+            stiff[k] = stiff[k].min(HELD_VALUE);
+        }
         let twice = task.twice();
         self.system.factor(&task.h, &models, &twice, &stiff);
         let variances = self.system.variances(&task.h, &models);

@@ -234,7 +234,8 @@ fn bounds_hold_and_are_reached() {
         for lambda in [0.0, 1e-3, 1.0, 1e9] {
             let options = SmoothOptions { bounds: Some(bounds), ..penalty(lambda) };
             let f = smooth_monotone(&x, &y, &options).unwrap();
-            assert!(f.smoothing().unwrap().converged);
+            let how = f.smoothing().unwrap();
+            assert!(how.converged && how.degrees_of_freedom >= 0.0, "{how:?}");
             assert!(
                 f.y().iter().all(|v| bounds[0] <= *v && *v <= bounds[1]),
                 "{bounds:?} {lambda}"
@@ -244,6 +245,15 @@ fn bounds_hold_and_are_reached() {
             }
         }
     }
+}
+
+/// Held by both bounds, two values have no freedom.
+#[test]
+fn bounds_take_degrees_of_freedom() {
+    let options = SmoothOptions { bounds: Some([0.3, 0.6]), ..penalty(1e-4) };
+    let f = smooth_monotone(&[0.0, 1.0], &[0.0, 1.0], &options).unwrap();
+    assert_eq!(f.y(), [0.3, 0.6]);
+    close(f.smoothing().unwrap().degrees_of_freedom, 0.0, 1e-8);
 }
 
 #[test]
