@@ -250,3 +250,34 @@ def test_columns_with_knots_of_their_own_export_as_one(rng):
     for peer in (f.to_ppoly(), f.to_bpoly(), f.derivative().antiderivative()):
         offset = y[0] - peer(0.0)
         np.testing.assert_allclose(peer(q) + offset, f(q), rtol=1e-9, atol=1e-9)
+
+
+@pytest.mark.parametrize("convex", [None, "data"])
+def test_data_over_many_decades_keep_their_shape(rng, convex):
+    for case in range(scaled(2000)):
+        n = int(rng.integers(2, 30))
+        decades = rng.choice([0, 2, 6, 12])
+        x = np.cumsum(10.0 ** rng.uniform(-decades / 2, decades / 2, n)) * 10.0 ** rng.uniform(
+            -9, 9
+        )
+        match case % 4:
+            case 0:
+                y = np.cumsum(10.0 ** rng.uniform(-decades, decades, n))
+            case 1:
+                y = rng.normal(size=n) * 10.0 ** rng.uniform(-100, 100)
+            case 2:
+                y = np.cumsum(rng.random(n) < 0.3) * 10.0 ** rng.uniform(-300, 300)
+            case _:
+                y = np.exp(x / x.max() * rng.uniform(-300, 300))
+        if not (np.diff(x) > 0).all():
+            continue
+        ends = ["natural", "estimated", "periodic"][case % 3]
+        f = ss.MonotoneCubic(x, y, ends=ends, convex=convex)
+        t = np.linspace(0, 1, 30)
+        q = np.unique((x[:-1, None] + np.diff(x)[:, None] * t).clip(x[0], x[-1]))
+        i = np.clip(np.searchsorted(x, q, side="right") - 1, 0, n - 2)
+        low, high = np.minimum(y[:-1], y[1:])[i], np.maximum(y[:-1], y[1:])[i]
+        assert ((low <= f(q)) & (f(q) <= high)).all()
+        assert (f(q, 1) * np.sign(np.diff(y))[i] >= 0).all()
+        np.testing.assert_array_equal(f(x), y)
+        assert convex or f.diagnostics.converged

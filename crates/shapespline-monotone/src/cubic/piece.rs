@@ -19,6 +19,8 @@ pub(crate) struct Piece {
     /// Of the diagonal of the Hessian the part that grows as a slope goes to 0: `(2/3)·S_other/(d r)`, where there is
     /// a level part.
     pub(crate) singular: [f64; 2],
+    /// And the part that grows with the slope: `(8/3) m/d`.
+    pub(crate) growing: [f64; 2],
     /// Whether there is a level part.
     pub(crate) level: bool,
 }
@@ -40,16 +42,17 @@ impl Piece {
                 2.0 / 3.0 * cubes[0] / d / root[1].max(TINY_ROOT),
             ];
             // 2m/d + (2/3)S/(d r) with S split into its own part, which is (2/3)m/d, and the other's.
-            let own = 8.0 / 3.0 / d;
+            let growing = [8.0 / 3.0 * (m[0] / d), 8.0 / 3.0 * (m[1] / d)];
             Self {
                 energy: 4.0 / 9.0 * s * c,
                 gradient: [4.0 / 3.0 * c * root[0], 4.0 / 3.0 * c * root[1]],
                 hessian: [
-                    own * m[0] + singular[0],
+                    growing[0] + singular[0],
                     2.0 * root[0] * root[1] / d,
-                    own * m[1] + singular[1],
+                    growing[1] + singular[1],
                 ],
                 singular,
+                growing,
                 level: true,
             }
         }
@@ -64,6 +67,7 @@ impl Piece {
             gradient: [by * (2.0 * u + v), by * (u + 2.0 * v)],
             hessian: [2.0 * by, by, 2.0 * by],
             singular: [0.0; 2],
+            growing: [0.0; 2],
             level: false,
         }
     }

@@ -237,6 +237,12 @@ impl Pieces {
         (all, energy)
     }
 
+    /// A value between that of the last knot and that of the next point, which rounding can leave.
+    fn onwards(&self, value: f64, end: f64) -> f64 {
+        let last = self.y[self.y.len() - 1];
+        value.clamp(last.min(end), last.max(end))
+    }
+
     /// Where a knot at a distance from one of the ends x of an interval goes: a part shorter than an ulp becomes one of an
     /// ulp; where there is no room it is left out.
     fn place(&self, width: f64, from_right: bool, x: [f64; 2]) -> Option<f64> {
@@ -262,7 +268,8 @@ impl Pieces {
             let share = (y[1] - y[0]) * knot.rise.clamp(0.0, 1.0);
             self.second.push([sign * second, sign * knot.second]);
             self.x.push(place);
-            self.y.push(if knot.from_right { y[1] - share } else { y[0] + share });
+            let value = if knot.from_right { y[1] - share } else { y[0] + share };
+            self.y.push(self.onwards(value, y[1]));
             self.slope.push(sign * knot.slope);
             second = knot.second;
         }
@@ -292,7 +299,7 @@ impl Pieces {
             };
             self.second.push(interval.second[k].map(|z| sign * z));
             self.x.push(knot);
-            self.y.push(value);
+            self.y.push(self.onwards(value, y[1]));
             self.slope.push(sign * interval.slope[k]);
             from = k + 1;
         }

@@ -77,7 +77,7 @@ impl Ramp {
         let gradient = turned(self.concave, [-gradient[0], gradient[1]]);
         let [first, last] = turned(self.concave, [aa, bb]);
         let singular = [first - plain, last - plain].map(|s| s.max(0.0));
-        Piece { energy, gradient, hessian: [first, -ab, last], singular, level: false }
+        Piece { energy, gradient, hessian: [first, -ab, last], singular, ..Piece::default() }
     }
 
     /// The second derivative. Of arms that rounding has made negative (straight data), nothing is left.

@@ -15,8 +15,8 @@ const SWEEPS: usize = 3;
 const SWEEP_STEPS: usize = 3;
 /// Relative steps at which a sweep leaves a node.
 const SWEEP_ENOUGH: f64 = 1.0 / 64.0;
-/// Steps of Newton's method at most; 12 are the most ever seen.
-const STEPS: usize = 100;
+/// Steps of Newton's method at most: data over hundreds of decades take some hundred, others at most a dozen.
+const STEPS: usize = 400;
 /// Steps of every slope, relative to it or to the smaller secant beside it, at which Newton's method ends. It
 /// converges quadratically: what is left then is rounding.
 const ENOUGH: f64 = 1e-10;
@@ -56,6 +56,7 @@ pub(super) struct Model {
     pub(super) diagonal: Vec<f64>,
     off_diagonal: Vec<f64>,
     singular: Vec<f64>,
+    growing: Vec<f64>,
     /// The same of convex and concave intervals, whose slopes are bounded by secants: before and after every node.
     barrier: Vec<Barrier>,
 }
@@ -311,7 +312,8 @@ impl<'a> Stretch<'a> {
     /// Energies of the intervals, gradient and Hessian of their sum.
     fn evaluate(&self, m: &[f64], model: &mut Model) {
         let n = self.nodes();
-        for values in [&mut model.gradient, &mut model.diagonal, &mut model.singular] {
+        let Model { gradient, diagonal, singular, growing, .. } = model;
+        for values in [gradient, diagonal, singular, growing] {
             values.clear();
             values.resize(n, 0.0);
         }
@@ -328,6 +330,7 @@ impl<'a> Stretch<'a> {
             for k in 0..2 {
                 model.gradient[i + k] += p.gradient[k];
                 model.diagonal[i + k] += p.hessian[2 * k];
+                model.growing[i + k] += p.growing[k];
                 if self.bend.get(i).is_some_and(|bend| *bend != 0) {
                     model.barrier[i + k][1 - k] = p.singular[k];
                 } else {
@@ -388,6 +391,10 @@ impl<'a> Stretch<'a> {
                 self.inside(i, m[i], bound + moved * moved)
             } else if self.is_bent(i) {
                 self.after(i, m[i], by, model.diagonal[i], model.barrier[i])
+            } else if by < 0.0 && model.growing[i] > 0.5 * model.diagonal[i] {
+                // The gradient is nearly quadratic in the slope: a step in the square, where plain ones would halve it.
+                let size = m[i] - bound;
+                bound + size * (1.0 + 2.0 * by / size).max(1.0 / 256.0).sqrt()
             } else {
                 bound + (m[i] - bound + by).max((m[i] - bound) / 16.0)
             });

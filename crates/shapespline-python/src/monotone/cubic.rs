@@ -108,7 +108,7 @@ impl MonotoneCubic {
         let convex = data.convex(&convex)?;
         let extrapolate = extrapolate.unwrap_or_default();
         let fits = data.fit(x.py(), |x, y, own, go_on| {
-            let convex = convex[own.start / x.len()].clone();
+            let convex = convex[own.start / x.len().max(1)].clone();
             let slopes = slopes.as_ref().map(|slopes| slopes[own].to_vec());
             let ends = ends.clone();
             let options = CubicOptions { ends, slopes, layer, min_slope, convex, extrapolate };
