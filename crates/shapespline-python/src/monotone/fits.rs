@@ -71,7 +71,7 @@ impl Column<'_> {
             Self::Pieces(f) => f.refined(knots),
         }
     }
-    pub(crate) fn to_bspline(&self) -> BSpline {
+    pub(crate) fn to_bspline(self) -> BSpline {
         both!(self, f => f.to_bspline())
     }
     #[inline]
