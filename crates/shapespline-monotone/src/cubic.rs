@@ -264,10 +264,8 @@ impl Task {
         let Self { problem, first, units, .. } = &self;
         let (first, units) = (*first, *units);
         let found = problem.solve(None, go_on)?;
-        let own = first..first + x.len() - 1;
-        let (energies, gaps) = problem.certificate(&found.m);
-        let sum = |values: &[f64]| values[own.clone()].iter().sum::<f64>();
-        let (least, gap) = (sum(&energies), sum(&gaps));
+        let (least, mut gaps) = problem.certificate(&found.m, first..first + x.len() - 1);
+        let gap: f64 = gaps.iter().sum();
         let Made { pieces, energy, solves, converged } = match &self.asked.take() {
             Some(asked) => self.bent(asked, [x, y], go_on)?,
             None => self.monotone([x, y], found.m, go_on)?,
@@ -284,7 +282,7 @@ impl Task {
             energy: out(energy),
             limited: Vec::new(),
         };
-        let gaps = gaps[own].iter().map(|gap| out(*gap)).collect();
+        gaps.iter_mut().for_each(|gap| *gap = out(*gap));
         let (level, lower_bound) = (pieces.level.clone(), out((least - gap).max(0.0)));
         let spline = MonotoneSpline::cubic(units, [x, y], pieces, extrapolate);
         // A second derivative beyond double precision: refuse rather than hand out infinities.

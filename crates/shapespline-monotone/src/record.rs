@@ -145,6 +145,10 @@ pub(crate) fn records(
     n: usize,
     tile: impl Fn(usize, usize) -> [Record; TILE] + Sync,
 ) -> Vec<Record> {
+    if n <= TILE {
+        // Small fits are many: no more memory than they need.
+        return tile(0, n)[..n].to_vec();
+    }
     let one = |k: usize| tile(k * TILE, TILE.min(n - k * TILE));
     let count = n.div_ceil(TILE);
     let tiles: Vec<[Record; TILE]> = if count <= 2 * TILES {

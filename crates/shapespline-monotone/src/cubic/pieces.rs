@@ -222,8 +222,20 @@ impl Pieces {
 
     /// Parts one after another, and the sum of their energies.
     fn joined(parts: Vec<(Self, f64)>) -> (Self, f64) {
-        let mut parts = parts.into_iter();
-        let (mut all, mut energy) = parts.next().unwrap_or_default();
+        if parts.len() == 1 {
+            return parts.into_iter().next().unwrap_or_default();
+        }
+        let count = |of: fn(&Self) -> usize| parts.iter().map(|(part, _)| of(part)).sum::<usize>();
+        let knots = count(|part| part.x.len()) + 1;
+        let mut all = Self {
+            x: Vec::with_capacity(knots),
+            y: Vec::with_capacity(knots),
+            slope: Vec::with_capacity(knots),
+            second: Vec::with_capacity(knots),
+            nodes: Vec::with_capacity(count(|part| part.nodes.len()) + 1),
+            level: Vec::new(),
+        };
+        let mut energy = 0.0;
         for (part, own) in parts {
             let start = all.x.len();
             all.nodes.extend(part.nodes.iter().map(|k| start + k));

@@ -234,36 +234,55 @@ impl Problem {
         Piece::new(m, [m[0].sqrt(), m[1].sqrt()], self.d[i] - c * self.h[i], self.h[i])
     }
 
-    /// The least energies of the intervals in scaled units, and what each is above its lower bound at most.
+    /// The least energy of some intervals in scaled units, and what each is above its lower bound at most.
     ///
     /// At the optimum the second derivatives `p` from both sides agree at free nodes, and are 0 at free ends. Whatever
     /// they are, `Σ φ(p)` with the minimum φ of [`least`] is a bound from below of the energy of every monotone
     /// interpolant; slopes that are held add the same to both sides.
-    pub(crate) fn certificate(&self, m: &[f64]) -> (Vec<f64>, Vec<f64>) {
-        let of = |i: usize| {
-            let own = self.piece(i, m);
-            (own.energy, if self.d[i] == 0.0 { 0.0 } else { self.gap(i, m, &own) })
-        };
-        let found = parts(self.h.len(), |part| part.map(of).collect::<Vec<_>>());
-        found.into_iter().flatten().unzip()
+    pub(crate) fn certificate(&self, m: &[f64], own: Range<usize>) -> (f64, Vec<f64>) {
+        let n = self.h.len();
+        let found = parts(own.len(), |part| {
+            let part = own.start + part.start..own.start + part.end;
+            let (mut energy, mut gaps) = (0.0, Vec::with_capacity(part.len()));
+            // Every interval is worked out once, and seen by its neighbours.
+            let at = |i: usize| if i < n { self.piece(i, m) } else { Piece::default() };
+            let mut before = if part.start > 0 { at(part.start - 1) } else { Piece::default() };
+            let mut own = at(part.start);
+            for i in part {
+                let after = at(i + 1);
+                energy += own.energy;
+                gaps.push(self.gap(i, m, [&before, &own, &after]));
+                (before, own) = (own, after);
+            }
+            (energy, gaps)
+        });
+        let energy = found.iter().map(|(energy, _)| energy).sum();
+        let mut gaps = Vec::with_capacity(own.len());
+        for (_, part) in found {
+            gaps.extend_from_slice(&part);
+        }
+        (energy, gaps)
     }
 
-    fn gap(&self, i: usize, m: &[f64], own: &Piece) -> f64 {
-        let n = self.h.len();
+    /// Of interval i, from the pieces before it, on it and after it.
+    fn gap(&self, i: usize, m: &[f64], [before, own, after]: [&Piece; 3]) -> f64 {
+        if self.d[i] == 0.0 {
+            return 0.0;
+        }
         let ends = own.ends();
         let p0 = if self.held[i] || self.is_pressed(i, m) {
             ends[0]
         } else if i == 0 {
             0.0
         } else {
-            0.5 * (ends[0] + self.piece(i - 1, m).ends()[1])
+            0.5 * (ends[0] + before.ends()[1])
         };
         let p1 = if self.held[i + 1] || self.is_pressed(i + 1, m) {
             ends[1]
-        } else if i + 1 == n {
+        } else if i + 1 == self.h.len() {
             0.0
         } else {
-            0.5 * (ends[1] + self.piece(i + 1, m).ends()[0])
+            0.5 * (ends[1] + after.ends()[0])
         };
         let c = self.floor.get(i).copied().unwrap_or(0.0);
         let bound = least([p0, p1], self.d[i] - c * self.h[i], self.h[i]);

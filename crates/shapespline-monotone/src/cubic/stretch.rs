@@ -321,8 +321,10 @@ impl<'a> Stretch<'a> {
             model.barrier.clear();
             model.barrier.resize(n, [0.0; 2]);
         }
-        model.energy.clear();
-        model.off_diagonal.clear();
+        for values in [&mut model.energy, &mut model.off_diagonal] {
+            values.clear();
+            values.reserve(n);
+        }
         for i in 0..n - 1 {
             let p = self.piece(i, [m[i], m[i + 1]]);
             model.energy.push(p.energy);
@@ -359,8 +361,10 @@ impl<'a> Stretch<'a> {
     /// scaled, which changes nothing in it but ranges.
     fn solve(&self, m: &[f64], model: &Model, step: &mut Vec<f64>, pivot: &mut Vec<f64>) {
         let n = m.len();
-        step.clear();
-        pivot.clear();
+        for values in [&mut *step, &mut *pivot] {
+            values.clear();
+            values.reserve(n);
+        }
         for i in 0..n {
             let (mut diagonal, mut right) = (model.diagonal[i], -model.gradient[i]);
             if i > 0 {
@@ -380,6 +384,7 @@ impl<'a> Stretch<'a> {
     /// The slopes after a part t of the step.
     fn moved(&self, m: &[f64], model: &Model, step: &[f64], t: f64, out: &mut Vec<f64>) {
         out.clear();
+        out.reserve(m.len());
         for i in 0..m.len() {
             let (bound, by) = (self.bound(i) - self.base(i), t * step[i]);
             out.push(if self.is_held(i) || step[i] == 0.0 {
