@@ -112,8 +112,8 @@ impl MonotoneCubic {
         Self::new_with(x, y, options, &|| ControlFlow::Continue(()))
     }
 
-    /// As [`MonotoneCubic::new`], with a question whether to go on, which is asked every few milliseconds (from any
-    /// thread).
+    /// As [`MonotoneCubic::new`], with a function that is called every few milliseconds, from any thread; return
+    /// `Break` to cancel.
     ///
     /// # Errors
     /// As [`MonotoneCubic::new`], and [`MonotoneError::Interrupted`] where the answer was no.

@@ -125,8 +125,8 @@ impl MonotoneQuintic {
         Self::new_with(x, y, options, &|| ControlFlow::Continue(()))
     }
 
-    /// As [`MonotoneQuintic::new`], with a question whether to go on, which is asked every few milliseconds (from
-    /// any thread).
+    /// As [`MonotoneQuintic::new`], with a function that is called every few milliseconds, from any thread; return
+    /// `Break` to cancel.
     ///
     /// # Errors
     /// As [`MonotoneQuintic::new`], and [`MonotoneError::Interrupted`] where the answer was no.

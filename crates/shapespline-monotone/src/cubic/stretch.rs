@@ -15,7 +15,8 @@ const SWEEPS: usize = 3;
 const SWEEP_STEPS: usize = 3;
 /// Relative steps at which a sweep leaves a node.
 const SWEEP_ENOUGH: f64 = 1.0 / 64.0;
-/// Steps of Newton's method at most: data over hundreds of decades take some hundred, others at most a dozen.
+/// Steps of Newton's method at most: data over hundreds of decades take a hundred or so, a million rough points thirty,
+/// most others less than ten.
 const STEPS: usize = 400;
 /// Steps of every slope, relative to it or to the smaller secant beside it, at which Newton's method ends. It
 /// converges quadratically: what is left then is rounding.

@@ -99,7 +99,7 @@ pub(super) fn check_smooth(f: &MonotoneCubic, x: &[f64], y: &[f64], c2: bool) {
     }
 }
 
-/// Whether the second derivative has a sign on interval i, and the slope goes its way: at 200 places.
+/// Samples interval i at 200 places: whether the second derivative has the sign, and the slope changes accordingly.
 fn check_sign(f: &MonotoneCubic, x: &[f64], i: usize, sign: i8, about: &str) {
     let secant = (f.y()[i + 1] - f.y()[i]).abs() / (x[i + 1] - x[i]);
     let mut before = f.evaluate(x[i], 1, None);
