@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """Print the table of python/docs/families.md: what the families make of the data sets.
 
 Run from the root of the repository; a test holds the page against it:

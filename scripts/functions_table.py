@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """Make the tables of python/docs/functions-compared.md: every class beside SciPy's interpolants.
 
 Run from the root of the repository; a test holds the page against it, but for the times:

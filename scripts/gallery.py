@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """Draw the figures of the papers again: python scripts/gallery.py [DIR].
 
 The page python/docs/gallery.md describes each figure, so that it can be held beside the original.

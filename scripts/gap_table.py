@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """Print the table of gaps in python/docs/fair-splines.md: energies over the C² cubic's, less 1.
 
 Run from the root of the repository; a test holds the page against it:

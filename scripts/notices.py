@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """Write the licences of the crates that are compiled into the wheel: THIRD-PARTY-LICENSES.txt.
 
 Of crates offered under several licences the MIT one is taken. Equal texts are written once.

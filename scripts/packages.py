@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """Build what is published, and try each part as a stranger would: alone, and nowhere near the tree.
 
     python scripts/packages.py [--python 3.10 …] [--pytest "-k published"] [--quick] [--built DIR]

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """Print what `make` must install before it can build and test, one requirement a line.
 
 pip can install a project's extras only together with the project, and building the extension is

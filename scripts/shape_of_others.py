@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """Print the table of python/docs/shape-of-others.md: how SciPy's curves keep the shape of data.
 
 Run from the root of the repository, with SciPy installed; a test holds the page against it:

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """Every array that a public call takes: the call with this argument, and a good value of it."""
 
 from collections.abc import Callable

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """One value however it is asked for: alone, sorted, backwards, strided, in bulk."""
 
 import numpy as np

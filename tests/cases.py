@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """What to fit: data sets with their ends, ready to be passed to a curve's constructor."""
 
 from collections.abc import Callable

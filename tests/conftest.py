@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """Settings and fixtures that all tests share."""
 
 import os

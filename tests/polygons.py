@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """Data polygons to interpolate: the shared data sets, and families made to be difficult.
 
 Every generator is seeded, so a failure names a polygon that everybody can make again.

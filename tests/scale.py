@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """How much the large generators of the tests run: a tenth, or everything in `make test-long`."""
 
 import os

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """Decide by dense sampling whether a curve keeps the shape of its data.
 
 The library decides its shape criteria exactly, from the coefficients of each segment. The tests

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """The limits of Karavelas & Kaklis 2000, Theorems 4.7 to 4.13, as all ν grow together.
 
 Each quantity approaches its limit like 1/ν: from one ν to the next, a hundred times larger, the

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """Unusable input is refused with the argument, the index and the value in the message.
 
 One table: what is called, which exception, and the pieces its message must contain. A good call

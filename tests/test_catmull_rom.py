@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """Catmull–Rom curves: their definition, locality, and handles in closed form."""
 
 from dataclasses import replace

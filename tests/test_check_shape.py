@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """Checks of curves that shapespline did not make: SciPy's, raw Bézier points, NURBS."""
 
 import json

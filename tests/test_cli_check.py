@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """shapespline check: verdicts by exit status, files of many kinds, one line for what is wrong."""
 
 import json

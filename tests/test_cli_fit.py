@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """shapespline fit: every family, on real files and bad ones; what it writes is read back."""
 
 import io

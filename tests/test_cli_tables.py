@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """Tables as people and their programs write them are read, or refused in one line; never wrong."""
 
 import csv

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """Closed data: ends that agree to rounding, and data that do not repeat their first point."""
 
 import pickle

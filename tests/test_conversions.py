@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """Arrays that come in: masked values, dates, objects, errors on the way, changes meanwhile."""
 
 import datetime as dt

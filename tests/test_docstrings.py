@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """Every public object is documented, and every example in its documentation is true."""
 
 import doctest

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """Evaluation against SciPy's piecewise polynomials, for every kind of query."""
 
 import numpy as np

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """What a fit calls preserved stays preserved in every form that it can be exported in.
 
 On chords over six decades: the legs of short segments between far points lose digits when they are

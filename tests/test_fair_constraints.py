@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """FairSpline with corners, directions and a largest deviation."""
 
 import pickle

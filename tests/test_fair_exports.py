@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """`FairSpline` as a B-spline: simple knots but at corners, and still the same curve."""
 
 import numpy as np

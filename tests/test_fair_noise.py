@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """Fair curves on smooth data with noise: no spikes, with or without a resolution."""
 
 import numpy as np

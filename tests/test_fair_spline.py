@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """`FairSpline` as Python users meet it; its mathematics is tested in tests/rust/tests/fair.rs."""
 
 import copy

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """`FairSpline` that is exactly straight along collinear runs."""
 
 import pickle

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """Directions given to a `FairSpline`: its own, some near them, some that contradict the shape."""
 
 import numpy as np

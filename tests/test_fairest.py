@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """The default strategy returns the fairest curve: no more tension than growth, none to spare."""
 
 from dataclasses import replace

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """Measures of fairness against closed forms, sampling and themselves after a change of units."""
 
 import itertools

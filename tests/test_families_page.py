@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """python/docs/families.md says what scripts/families_table.py finds."""
 
 import sys

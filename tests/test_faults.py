@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """Faults of the world around: forks, signals, damaged bytes, full disks, storms of threads, files.
 
 Unusable numbers are in test_bad_input.py; the page python/docs/faults.md lists all of them.

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """python/docs/faults.md names tests that are there."""
 
 import ast

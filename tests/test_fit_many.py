@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """fit_many: every curve as its class alone makes it, and every fault where it belongs."""
 
 import os

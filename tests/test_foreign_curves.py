@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """What counts as a curve: look-alikes, NURBS, pieces, and what is refused with a clear error."""
 
 import pickle

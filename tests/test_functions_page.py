@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """python/docs/functions-compared.md says what scripts/functions_table.py finds."""
 
 import sys

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """python/docs/fair-splines.md says what scripts/gap_table.py finds."""
 
 import sys

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """Arc length, curvature, torsion and frame, against formulas and curves with known values."""
 
 import numpy as np

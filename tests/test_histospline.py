@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """`histospline`: rates that are not negative and have the totals of their bins."""
 
 import numpy as np

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """What `import shapespline` brings along, and what a user's type checker says of it."""
 
 import subprocess

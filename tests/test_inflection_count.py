@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """Inflection counts: the examples of the paper, theorems, and counts found by sampling."""
 
 import os

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """`InputError` says in attributes what is refused: curves, functions, collections, other curves."""
 
 import pickle

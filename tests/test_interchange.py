@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """Curves for other programs: what is written is the same curve when it is read by somebody else."""
 
 import json

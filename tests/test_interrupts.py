@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """Ctrl-C is heard within a second by whatever can run longer; see also test_processes.py."""
 
 import numpy as np

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """Moving, turning, scaling or reversing the data moves the curve with it, by rounding only.
 
 This holds for the tension that a strategy finds as well: a sweep from one end, or a tolerance

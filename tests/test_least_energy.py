@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """What python/docs/least-energy.md says of `MonotoneCubic`, by means that share nothing with it."""
 
 from itertools import pairwise

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """How far a moved point reaches: the README's row on locality."""
 
 import numpy as np

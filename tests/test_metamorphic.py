@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """Relations between answers that need no known answer: moved data, other forms, other batches.
 
 Every relation runs over families × boundaries × data sets. Rotations, translations and reversal

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """Relations between functions of one variable that need no known answer."""
 
 from functools import partial

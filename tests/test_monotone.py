@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """Monotone interpolation of one variable: shape, energies, options, inverse."""
 
 from pathlib import Path

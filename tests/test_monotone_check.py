@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """`check_monotone`: monotonicity and convexity of any library's functions, exactly."""
 
 import json

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """`convex=` of `MonotoneCubic`: convex and concave where the data are, and monotone."""
 
 import numpy as np

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """What `MonotoneCubic` promises: least energy, C², monotone to the last bit, a certificate."""
 
 from itertools import pairwise

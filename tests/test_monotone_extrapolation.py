@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """What functions are outside their data: defaults, both sides, derivatives, integrals, infinity."""
 
 import math

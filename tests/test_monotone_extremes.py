@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """Extreme but valid data, and properties that hold for all: never NaN from finite data."""
 
 import re

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """Given slopes of the quintic: taken as they are, refused by name, or limited."""
 
 import numpy as np

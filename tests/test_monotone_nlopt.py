@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """A second opinion: both programs of the quintic through NLopt's SLSQP, built here anew."""
 
 from pathlib import Path

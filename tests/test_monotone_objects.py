@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """Monotone interpolants as Python objects, and what they refuse."""
 
 import copy

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """SciPy's own tests of PCHIP and Akima, as properties of all families.
 
 `TestPCHIP`, `TestAkima1DInterpolator` and `test_shapes` in scipy/interpolate/tests: axes of size

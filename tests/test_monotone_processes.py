@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """Monotone fits and the processes they run in: Ctrl-C, fork, other threads."""
 
 import os

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """Roots, solutions and inverses of functions: none is wrong, none is missing, in every family."""
 
 import numpy as np

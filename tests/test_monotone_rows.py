@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """Many rows with their own x, and Bézier-like curves."""
 
 import pickle

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """Calculus of the monotone interpolants beside SciPy's piecewise polynomials of the same."""
 
 import numpy as np

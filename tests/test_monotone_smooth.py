@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """`smooth_monotone`: against SciPy, isotonic regression, brute force, and its promises."""
 
 import pickle

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """The notebooks of python/examples run from above, and each draws something.
 
 Their cells are executed here without Jupyter, which takes a fraction of the time; `make docs`

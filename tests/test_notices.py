@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """The licences of the crates in the wheel come with it, and are those of Cargo.lock."""
 
 from importlib.metadata import PackageNotFoundError, metadata

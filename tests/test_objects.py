@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """Curves as Python objects: immutable, picklable, copyable, hashable, shared between threads."""
 
 import copy

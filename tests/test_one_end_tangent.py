@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """A tangent given at one end, the other end natural: every family, both ends."""
 
 import json

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """A curve keeps the options of its fit, and its check asks them again."""
 
 import copy

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """The README and the documentation: every example runs as it stands, in the order of its page."""
 
 import doctest

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """Pickles of every class: whole ones come back, damaged ones are refused by name."""
 
 import pickle

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """Figures show what they say: the numbers in the Axes are compared, not the pixels."""
 
 import subprocess

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """Processes, threads and signals: forks, systems without threads, Ctrl-C.
 
 The monotone functions have more of it in test_monotone_processes.py.

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """The published results of Karavelas & Kaklis 2000, to the last digit they print."""
 
 import numpy as np

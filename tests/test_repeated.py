@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """Points that repeat the one before them, and repeated times, as a GPS gives them at a halt."""
 
 import pickle

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """The shape report: what it says, in all its forms, against what sampling finds."""
 
 import json

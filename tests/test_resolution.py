@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """What a move of the points by the resolution could undo is not asked for."""
 
 import json

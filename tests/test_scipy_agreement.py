@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """Without tension, ν-splines and tension cubics are the C² cubic that SciPy builds."""
 
 import numpy as np

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """The sampling checker itself, on curves whose shape is known."""
 
 import numpy as np

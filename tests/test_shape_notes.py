@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """What a report says beyond the criteria: conditions at nodes, oscillations about planes."""
 
 import numpy as np

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """No violation on any data: checked by sampling, which shares no code with the solver."""
 
 from itertools import pairwise

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """Checks of curves with corners and straight runs: objects, exports, files and the command line."""
 
 import json

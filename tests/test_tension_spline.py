@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """C² tension cubics: what Manni 2001 proves of them, seen from Python."""
 
 from dataclasses import replace

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """At every point a shape-preserving curve turns as the polygon does; what stops is not regular."""
 
 import numpy as np

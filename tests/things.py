@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """One object of every class, for what all of them must be able to do."""
 
 import numpy as np

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """Whether other Python threads run while the library works, and whether it hears Ctrl-C.
 
 No test may fail because the machine is busy, with the tests of another process for one: so a busy

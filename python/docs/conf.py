@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """Settings of the documentation: `make docs` builds it, warnings are errors.
 
 Sphinx with MyST-NB, because autodoc reads the docstrings of the compiled classes from the module

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """Splines that interpolate data and keep its shape.
 
 >>> import shapespline as ss

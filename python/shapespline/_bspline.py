@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """From Bézier pieces to a B-spline with no more knots than the smoothness needs."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """Lines, cells and numbers of text tables, as people and their programs write them."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """Curves of other libraries as Bézier pieces.
 
 Known by what they have, so that SciPy is not imported: ``t, c, k`` is a B-spline, ``x, c`` a

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, Literal, NoReturn, TypedDict, final, overload
 

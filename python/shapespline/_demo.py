@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """The demo: real data, what the C² cubic spline does to their shape, and what mends it."""
 
 from __future__ import annotations

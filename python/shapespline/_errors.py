@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """Exceptions of shapespline."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """Curves in files: what the command line reads and writes as JSON.
 
 The format is described in python/docs/files.md. Everything that is wrong with a file is a

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """The command ``shapespline fit``: points of a file in; samples, the curve, a report, a figure out.
 
 One family of options for every method: an option that the method does not have is bad input, with

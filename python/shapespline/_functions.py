@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """The verbs of functions: fit one, make rates from totals, check one of any library."""
 
 from __future__ import annotations

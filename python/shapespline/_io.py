@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """Files in and out of the command line; everything that is wrong with one is one line of text."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """The kinds of monotone functions: their classes, and the options of each."""
 
 from __future__ import annotations

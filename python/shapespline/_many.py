@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """Many curves at once: ``fit_many`` and the collection that it returns."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """The methods that fit curves: their classes, their options, and the default of each."""
 
 from __future__ import annotations

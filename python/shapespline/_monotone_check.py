@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """Does a function keep the monotonicity and the convexity of its data? Of any library's functions.
 
 Decided on the Bernstein form of the derivatives: its least coefficient bounds them from below, its

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """Arguments of the command line: how they are read, and the options of ``shapespline fit``."""
 
 from __future__ import annotations

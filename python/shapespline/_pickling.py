@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """Pickles with a checksum for the classes that are written in Python; the others have their own."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """A sign of life on the terminal while something takes long."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """Small records that reports are made of: named tuples, so they compare, hash and pickle."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """Checks of any curve against points, and inflection counts."""
 
 from __future__ import annotations

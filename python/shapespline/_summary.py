@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """One figure that says what a fit is like: `shapespline fit --plot`."""
 
 from __future__ import annotations

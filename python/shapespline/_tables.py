@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """Tables of points in text files: what the command line reads, and writes back.
 
 The format is described in python/docs/files.md. Everything that is wrong with a file is a

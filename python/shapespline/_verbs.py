@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """The verb `fit`: one curve through points that keeps their shape, by any method."""
 
 from __future__ import annotations

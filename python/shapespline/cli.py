@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """The command ``shapespline``.
 
 One function a command, each with a parser of its own: a new command is one more `_add_…`.

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """Curves for other programs: exact B-splines, for geomdl, as SVG and as STEP.
 
 Everything here is exact but for rounding: a curve is a piecewise polynomial already, and only its

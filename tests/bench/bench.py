@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """Speed and memory beside SciPy's, measured in one run: ``make bench``.
 
 Every line is a ratio of two measurements made on the same machine, alternately, within seconds of

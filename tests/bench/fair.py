@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """What fair curves cost, beside the plain cubic and within the times that are promised."""
 
 from collections.abc import Iterator

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """What a line of the table is, and how its times are taken."""
 
 import gc

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """The lines about monotone interpolation, beside SciPy's PCHIP."""
 
 from collections.abc import Iterator

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """Time SciPy's PCHIP in the units of shapespline-monotone's example `speed_of_monotone`."""
 
 import time

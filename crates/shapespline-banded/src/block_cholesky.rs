@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Symmetric positive definite chains of dense blocks, open or closed into a ring.
 //!
 //! A Newton step over a chain of nodes with a few unknowns each, where only neighbours meet, needs one

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Symmetric positive definite block-tridiagonal systems with 2×2 blocks, eliminated while they are assembled.
 //!
 //! An interior-point step over a chain of nodes with two unknowns each needs one such system. The matrix is

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Strictly convex quadratic programs with a tridiagonal Hessian and box constraints.
 //!
 //! `minimise ½ xᵀ A x + qᵀ x` subject to `lower ≤ x ≤ upper`, `A` symmetric positive definite and tridiagonal.

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Why a system cannot be solved.
 
 /// A system that cannot be solved; the row is named.

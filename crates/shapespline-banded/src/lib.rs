@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Tridiagonal systems with scalar or vector right-hand sides, block tridiagonal ones, and strictly
 //! convex tridiagonal programs.
 //!

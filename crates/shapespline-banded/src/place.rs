@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! A few rows of a solved system, solved again and again while the rest stays.
 
 use std::ops::Range;

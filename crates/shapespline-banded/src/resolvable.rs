@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! A system that is solved again only where its rows changed.
 //!
 //! In a strictly diagonally dominant system a change dies away geometrically: by at least `2^{−k}`

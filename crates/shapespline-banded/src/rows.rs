@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! The system that is solved: its rows, made when asked for.
 
 use std::ops::Range;

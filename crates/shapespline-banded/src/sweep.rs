@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Elimination and back substitution of a whole open system, on all threads where it is long.
 //!
 //! What a row inherits from the rows before it dies away geometrically, and in floating point

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Thomas's algorithm.
 
 use std::ops::{Div, Mul, Sub};

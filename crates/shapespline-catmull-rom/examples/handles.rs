@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Prints how far each handle of a uniform Catmull–Rom curve had to be shortened, and what the full
 //! ones would have violated.
 //!

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Tangent directions that divide the turning angles evenly between neighbouring segments.
 //!
 //! A tangent strictly between its chords keeps the shape with handles that are short enough (crate

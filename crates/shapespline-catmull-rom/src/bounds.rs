@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! The largest handles that keep the shape of a segment, in closed form.
 //!
 //! Bounds are on the factors of the full legs `a, c` of a segment: handles strictly below both keep

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! The Catmull–Rom interpolant.
 
 use std::ops::ControlFlow;

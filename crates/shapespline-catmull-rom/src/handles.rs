@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Catmull–Rom curves as a family of the tension search: handles, and what shortens them.
 
 use std::{convert::Infallible, ops::Range};

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Catmull–Rom curves through points in space, and the largest handles that keep their shape.
 //!
 //! **Definition.** The tangent at a node is that of the parabola through its three points,

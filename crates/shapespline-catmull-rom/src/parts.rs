@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! The largest handles with their check, stretch by stretch, so that what a stretch needs stays in the
 //! cache. Everything is local: stretches know nothing of each other.
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! The largest handles of one stretch of a polygon after another, with their check.
 //!
 //! The loops work on several segments at once (see [`Stretch`]); what is rare, lines and ends, comes

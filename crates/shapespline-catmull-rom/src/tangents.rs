@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Tangents of Catmull–Rom curves.
 
 use shapespline_geometry::{DVec3, DataPolygon};

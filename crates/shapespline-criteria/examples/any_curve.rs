@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Does somebody else's curve keep the shape of these points? A cubic B-spline through a small
 //! helix, its inflections, and what the points themselves say:
 //! `cargo run -p shapespline-criteria --example any_curve`.

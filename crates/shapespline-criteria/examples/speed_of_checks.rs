@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! What a check costs a segment, best of several, on one core:
 //! `RAYON_NUM_THREADS=1 cargo run --release -p shapespline-criteria --example speed_of_checks`.
 

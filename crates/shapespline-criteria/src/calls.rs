@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! What the polygon calls for: the index sets (5.34)–(5.39) of paper 001, with its zero tests made
 //! relative.
 

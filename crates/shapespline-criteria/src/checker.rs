@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! The checker: what a polygon calls for, held against segments.
 
 use std::ops::Range;

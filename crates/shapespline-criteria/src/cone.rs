@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Whether a vector quadratic stays inside a double cone: the common form of coplanarity (`ω` around
 //! the plane normal) and collinearity (`γ'` around the line).
 

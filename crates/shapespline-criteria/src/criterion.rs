@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! The criteria by name, sets of them, and their tolerances.
 
 use shapespline_geometry::InputError;

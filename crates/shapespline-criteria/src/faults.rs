@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! The verdict on one segment: which of the exact conditions fail.
 
 use glam::DVec3;

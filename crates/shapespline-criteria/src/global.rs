@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Global convexity of a cubic segment (paper 002, Definition 3.16), in closed form.
 //!
 //! Seen along `n`, with `A, B, C = (a×b)·n, (b×c)·n, (a×c)·n`, the conditions beyond `ω·n > 0` are

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Does a curve keep the shape of the points it interpolates?
 //!
 //! The criteria compare each cubic segment with the data polygon around it:

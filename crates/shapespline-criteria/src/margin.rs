@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! How far a segment is from failing a criterion: signed, scale-free margins.
 //!
 //! | criterion | margin |

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! What the points themselves say: chords, binormal vectors, discrete torsion, and what each segment
 //! calls for.
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Whether a curve is regular: `γ' ≠ 0`.
 //!
 //! A curve that stops has no tangent there, no curvature and no frame, so no shape to keep. For a hodograph

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! The report: what was asked, what holds, where not, and by how much.
 
 use crate::{Criteria, Criterion};

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! What points do not ask for whose places are known to a resolution `δ` only: all that a move of the
 //! points by as much could undo.
 //!

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! How far rounding may have moved a number whose sign is asked for.
 //!
 //! The conditions on a cubic are signs of products of its legs `a, c`, its chord `L` and vectors of the

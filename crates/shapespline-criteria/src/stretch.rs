@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! The checker of one stretch of a polygon after another: for methods that are local, and for a look
 //! at a curve of which nothing has to be kept.
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Turning: how a segment bends at its two nodes.
 //!
 //! Manni's (i.3): at a node with `P_i ≠ 0`, `(K(u_i)·P_j)(P_i·P_j) > 0` for those of `j = i−1, i, i+1`

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! The checker of one window of a curve after another, for searches that come back to the same places.
 
 use std::{cell::Cell, ops::Range};

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! What keeps a condition `z > 0`: a logarithmic barrier, or an elastic one that takes any `z`.
 //!
 //! *Barrier*: `μ β(z)`, with `β(z) = −log ζ − (1 − ζ) − (1 − ζ)²/2`, `ζ = z/KNEE`, below the knee and 0

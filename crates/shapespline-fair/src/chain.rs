@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! A chain of segments whose nodes are to be found: the whole curve, or a window of it.
 
 use std::ops::Range;

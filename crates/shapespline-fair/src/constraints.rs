@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! What else a curve has to do: corners at points, directions at points, a distance from the polygon.
 
 use std::borrow::Cow;

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! The plain C² cubic spline: where the search begins, and a lower bound of the parametric energy.
 
 use std::ops::Range;

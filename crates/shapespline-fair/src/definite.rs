@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Element Hessians made positive definite.
 //!
 //! Where the Hessian of the whole is indefinite, each indefinite element is mended by itself: its

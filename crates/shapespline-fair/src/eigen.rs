@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Eigenvalues and eigenvectors of a small symmetric matrix: reflections to a tridiagonal matrix, then
 //! implicitly shifted QL steps (G. H. Golub, C. F. Van Loan, Matrix Computations, 8.3). Search directions are
 //! mended by them element by element, some thousand times in a second; vectors are rows, so that rotations

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! The element: one segment as a C² cubic B-spline with two extra knots.
 //!
 //! Between nodes with first derivatives `q0, q1` and second derivatives `r0, r1` the segment is a cubic

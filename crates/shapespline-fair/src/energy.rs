@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! The energies of a segment, with gradient and Hessian with respect to its scaled legs.
 //!
 //! `parametric`: `∫|Q''|²du`, a quadratic form, exactly. `bending`:

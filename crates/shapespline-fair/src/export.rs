@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! From derivatives at the nodes to cubic pieces.
 
 use std::collections::BTreeMap;

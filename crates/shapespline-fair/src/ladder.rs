@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! The ladder on the whole curve: windows, widened where they must be, and the exact check.
 
 use std::collections::{BTreeMap, BTreeSet};

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Gradient and Hessian with respect to the five scaled legs of a segment, and their way to the nodes.
 
 use glam::{DMat3, DVec3};

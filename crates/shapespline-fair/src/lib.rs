@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Fair curves that keep the shape of their data: C² cubics with at most two extra knots per segment and
 //! no more energy than the shape needs.
 //!

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Restarts from the closed-form start, in small windows.
 //!
 //! The elastic barrier can come to rest where conditions fail by little and no small move helps: `ω`

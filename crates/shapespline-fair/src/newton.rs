@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Damped Newton steps on a chain: objective and barrier at once.
 //!
 //! The function is a sum over segments, and so is everything here. Where the Hessian of the whole is

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! What to keep, how exactly, and what to minimise.
 
 use shapespline_criteria::{Criteria, Tolerances};

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! What a fit did, and what it came to.
 
 use shapespline_banded::SolveError;

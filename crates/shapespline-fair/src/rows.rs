@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! The conditions of a segment: each says that a polynomial in the legs is positive.
 //!
 //! | condition | polynomial | source |

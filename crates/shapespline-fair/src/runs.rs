@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Collinear runs that the curve goes through exactly straight.
 //!
 //! At every node of a run both derivatives lie along it, so its control points lie on the line. Where the

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Windows around failing segments, each solved by itself; on all threads, where there are many segments.
 
 use rayon::prelude::*;

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! What the data ask of each segment: chords, normals, signs, in units of mean chord and mean speed one.
 
 use glam::DVec3;

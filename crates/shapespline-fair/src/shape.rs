@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Values, gradients and Hessians of the conditions of a segment.
 
 use glam::{DMat3, DVec3};

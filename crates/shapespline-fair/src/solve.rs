@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! The ladder on one chain: from the plain cubic to the optimum.
 
 use crate::{

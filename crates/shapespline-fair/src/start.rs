@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! A strictly feasible start in closed form.
 //!
 //! At a node between chord directions `u, u'` with turn `θ`, binormal `P̂`, bisector `T` and

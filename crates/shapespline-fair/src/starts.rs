@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Nodes of a chain put where the closed-form start has them.
 
 use crate::{

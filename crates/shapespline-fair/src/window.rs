@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Windows: the stretches of a curve that are solved by themselves, the rest held.
 
 use shapespline_geometry::DataPolygon;

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Arc length, and parameters at given arc lengths.
 
 use std::ops::ControlFlow;

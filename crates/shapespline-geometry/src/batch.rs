@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Values at many parameters: segments first, then values, on all threads.
 
 use std::array;

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Bernstein polynomials and their signs on an interval, decided, not sampled.
 //!
 //! A polynomial of degree `n` is held as its `n + 1` Bernstein coefficients on `[0, 1]`. All of them

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Conditions at the ends of a curve.
 
 use glam::DVec3;

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! B-splines taken apart into Bézier pieces, by Boehm's knot insertion.
 
 use glam::DVec4;

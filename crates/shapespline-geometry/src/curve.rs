@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! What every curve can be asked, whatever its parameter means.
 
 use glam::DVec3;

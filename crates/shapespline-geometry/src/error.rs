@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! What can be wrong with a user's input: always with the argument, the place and the value.
 
 use std::fmt;

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Curvature, torsion and the Frenet frame of a segment.
 //!
 //! All come from the Bézier legs, not from derivatives: near a node under high tension `γ'` is all but

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! From points as users have them to a polygon: points that repeat the one before them are left out, and
 //! closed data get their first point again at the end. Indices keep referring to the input.
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Geometry primitives of interpolating space curves.
 //!
 //! Data flows one way through this crate: points and a [`Parametrization`] make a [`DataPolygon`]

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Finding the segment of a parameter.
 //!
 //! Finding it costs more than evaluating the cubic there, so three ways serve three uses: a binary

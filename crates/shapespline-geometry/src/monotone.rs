@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! The monotone cubic that maps a Bézier parameter to another one, and its inverse.
 
 /// The cubic on `[0, 1]` from 0 to 1 with slopes `0 < λ⁰, λ¹ ≤ 1` at its ends: (3.3) of paper 000 on

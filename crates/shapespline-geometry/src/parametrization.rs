@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! How parameters are chosen from points.
 
 use glam::DVec3;

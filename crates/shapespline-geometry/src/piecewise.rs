@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! The piecewise cubic curve: the one storage of all families.
 
 mod evaluate;

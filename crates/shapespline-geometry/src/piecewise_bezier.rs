@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Piecewise Bézier curves of any degree, polynomial or rational: the form in which curves that were
 //! not made here are taken in.
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! The data polygon: what the points themselves say about the shape of a curve through them.
 
 use std::ops::Range;

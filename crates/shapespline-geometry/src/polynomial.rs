@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Bernstein polynomials of any degree, with scalar or vector coefficients and a bound on what
 //! rounding did to them.
 //!

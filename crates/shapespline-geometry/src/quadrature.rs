@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Adaptive quadrature of positive functions that may peak at the ends of the interval.
 
 /// Nodes and weights of the seven-point Gauss–Lobatto rule on `[−1, 1]`: the ends belong to it, so

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Collections of rows of different lengths, and work on all rows at once.
 
 use std::ops::Range;

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! A piecewise cubic run through in another parameter.
 
 use glam::DVec3;

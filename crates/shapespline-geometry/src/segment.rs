@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! One cubic segment in Bézier form: the one segment type of all families.
 
 use glam::DVec3;

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! A stretch of a polygon, coordinate by coordinate, for arithmetic on several segments at once.
 //!
 //! A formula in a loop over [`Lanes`] is compiled for as many segments at a time as the machine's

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Lengths and directions that neither overflow nor underflow.
 
 use glam::DVec3;

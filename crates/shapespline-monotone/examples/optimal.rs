@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Optimal slopes on data of many kinds: steps, certified gaps and build times.
 //! `cargo run --release -p shapespline-monotone --example optimal [points] [sets]`.
 

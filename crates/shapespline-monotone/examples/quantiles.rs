@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! A smooth distribution function through empirical quantiles, its density, and its quantile function.
 //!
 //! `cargo run -p shapespline-monotone --example quantiles`

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Build and evaluation times: `cargo run --release -p shapespline-monotone --example speed_of_monotone`.
 //!
 //! The peer, SciPy's `PchipInterpolator`, is timed by `tests/bench/pchip.py` in the same units.

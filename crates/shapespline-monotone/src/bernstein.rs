@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Polynomials of any small degree in Bernstein form on [0, 1]: value, derivative, Taylor coefficients about the ends.
 
 /// The value at t (de Casteljau; also outside [0, 1]).

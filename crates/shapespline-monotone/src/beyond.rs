@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! The polynomial with which a function continues beyond an end knot.
 
 use crate::bernstein;

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Cubic, quartic and quintic Bézier-like curves in any dimension (paper 003, equations (1)–(8)).
 //!
 //! All have four control points V₀ … V₃ and pass through the first and the last. With F₀ … F₃ the cubic basis (1):

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! The functions as B-splines, with as few knots as their smoothness allows.
 //!
 //! A coefficient is the blossom of a piece at the knots inside its support. At arguments τ … τ, a, b about one knot τ it

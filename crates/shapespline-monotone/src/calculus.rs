@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Derivatives, integrals and solutions of the interpolants.
 
 use crate::bernstein;

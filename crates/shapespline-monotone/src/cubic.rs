@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! The monotone C² cubic: of all monotone functions through the data the one with the least bending energy.
 
 use crate::MonotoneError;

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Checked data in scaled units, so that nothing over- or underflows on the way to the coefficients.
 
 use crate::MonotoneError;

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! The two energies of a quintic segment, and how they are weighted.
 
 use crate::data::{Data, parts};

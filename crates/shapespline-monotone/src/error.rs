@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! What cannot be fitted or asked: every variant names the argument, the place and the value.
 
 use thiserror::Error;

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Values and derivatives of the interpolants, one or many: segments first, then values, on all threads.
 
 use crate::extrapolation::{Continuation, Extrapolation};

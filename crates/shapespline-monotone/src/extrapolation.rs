@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! What a function is outside its knots: one continuation below them, one above.
 
 use crate::MonotoneError;

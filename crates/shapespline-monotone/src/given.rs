@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Given slopes: whether a C² monotone quintic has them, and second derivatives with which it is strictly monotone.
 //!
 //! A segment couples the second derivatives at its ends ([`Region`]), and nothing else does. So what the nodes up to i

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Definite integrals over many pieces in O(log N).
 
 use crate::bernstein;

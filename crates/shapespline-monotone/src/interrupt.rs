@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Long fits that can be ended from outside.
 
 use crate::MonotoneError;

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! The inverse function of strictly monotone data: quantiles of a distribution function, and the like.
 
 use crate::MonotoneError;

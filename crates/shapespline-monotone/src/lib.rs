@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Monotone interpolation of one variable: the C² cubic of least bending energy, and Bézier-like splines.
 //!
 //! # Definition

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Finding the segments of queries: a table of equal buckets over the knots, built at the first large request.
 
 use crate::tiles::TILE;

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Many fits in one call, in parallel: columns on one x, and rows with their own x.
 
 use crate::MonotoneError;

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Slopes and second derivatives together: the least energy over all C² monotone quintics on the data's knots, or over
 //! those with some slopes prescribed.
 //!

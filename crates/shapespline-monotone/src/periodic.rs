@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Periodic functions, and their antiderivatives, which repeat up to polynomials that accumulate from period to period.
 //!
 //! Let G be an antiderivative of order m of a function of period T that starts at x₀. On the k-th period it is

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Piecewise polynomials in Bernstein form: what derivatives and antiderivatives of the interpolants are.
 
 use crate::bernstein;

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! The paper's C² program (17), (20), (22), (23) as a tridiagonal box program in the nodal second derivatives.
 //!
 //! With `sᵢ` as unknowns the continuity equations (17) hold by construction:

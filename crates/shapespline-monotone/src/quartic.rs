@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! The C¹ local monotone quartic of the paper: equation (15), conditions (12), (13), theorem 1 and the four cases.
 
 use crate::MonotoneError;

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Quartics on [0, 1] in Bernstein form: the derivative of a quintic segment, its minima and its exact sign.
 
 /// The value at t by the scheme of de Casteljau's weights.

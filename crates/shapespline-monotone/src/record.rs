@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! One segment as it is evaluated: a cache line of numbers that keeps the ends exact.
 
 use rayon::prelude::*;

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! The programs of this crate through Clarabel, an independent conic solver: the reference of the tests.
 #![allow(clippy::unwrap_used)]
 

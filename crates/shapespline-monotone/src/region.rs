@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! End derivatives of the non-negative quartics of mean 1 with given end values: what a segment of a monotone quintic
 //! with given slopes leaves to its second derivatives, exactly.
 //!

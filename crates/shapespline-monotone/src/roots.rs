@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Real roots of polynomials on an interval, in Bernstein form on [0, 1] or in powers of τ on [0, ∞).
 //!
 //! A polynomial is monotone between neighbouring stationary points, so the signs there decide whether there is a root

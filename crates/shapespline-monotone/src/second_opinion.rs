@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! The quintic's two programs through NLopt (feature `nlopt`): a second opinion, not a faster way.
 //!
 //! The crate's own solvers exploit the banded structure; NLopt's SLSQP treats the same programs as dense smooth

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Nodal slopes: Fritsch–Butland as the paper prints it (but for ends beside a turn), and limits for given slopes.
 //!
 //! Everything is in signed, scaled units; decreasing data are the reflection of increasing ones because every

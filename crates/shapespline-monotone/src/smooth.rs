@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Smoothing by monotone cubics: the monotone function nearest to noisy data for its bending energy.
 //!
 //! [`smooth_monotone`] minimises `Σ w(y − f(x))² + λ ∫f''² dx` over **all** monotone functions f. Whatever the values at

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! The interpolant that all schemes make: data, slopes, and one evaluation record per piece.
 
 use crate::cubic::Pieces;

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! The paper's program on long data: stretches that fit into the cache, solved independently and joined.
 //!
 //! At the optimum every sᵢ is what its neighbours make of it, clamped to its bounds: `clamp(−(qᵢ + oᵢ₋₁sᵢ₋₁ +

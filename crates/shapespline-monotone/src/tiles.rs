@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Many queries: cut into tiles, which all threads work through.
 
 use rayon::prelude::*;

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Optimal slopes of long data: overlapping windows solved independently and joined.
 //!
 //! A change at one node dies out by a factor of about four a node, so the optimum over a window agrees with the

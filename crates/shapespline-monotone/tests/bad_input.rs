@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Every refusal names the argument, the index and the value.
 #![allow(clippy::unwrap_used)]
 

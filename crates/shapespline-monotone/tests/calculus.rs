@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Derivatives, integrals, roots, inverse, extrapolation, batches and storage, against independent computations.
 #![allow(clippy::unwrap_used)]
 mod common;

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! What a function is outside its data: every mode, on either side, in values, derivatives, integrals and inverses.
 #![allow(clippy::unwrap_used)]
 mod common;

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Long fits can be ended from outside.
 #![allow(clippy::unwrap_used)]
 use shapespline_monotone::*;

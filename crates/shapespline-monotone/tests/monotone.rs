@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Monotone to the last bit, on random sets over twelve decades with repeats.
 #![allow(clippy::unwrap_used)]
 mod common;

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Published and reference energies, continuity, and the paper's scheme.
 #![allow(clippy::unwrap_used, clippy::needless_range_loop)]
 mod common;

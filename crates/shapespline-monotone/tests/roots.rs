@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Roots and solutions: none is wrong, none is missing, inside the data and beyond.
 #![allow(clippy::unwrap_used)]
 mod common;

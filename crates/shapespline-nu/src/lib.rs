@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! ν-splines: G² cubic interpolation of points in space, with tension found automatically.
 //!
 //! **Definition.** The ν-spline through `I_0 … I_N` at `u_0 < … < u_N` is the C¹ piecewise cubic with

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! The ν-spline interpolant.
 
 use std::ops::ControlFlow;

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! The linear system of the tangents.
 
 use std::ops::Range;

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! What a check is asked: criteria and tolerances, as users give them or as a fit kept them.
 
 use pyo3::prelude::*;

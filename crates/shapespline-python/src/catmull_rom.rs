@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! `CatmullRom`: what is particular to Catmull–Rom curves.
 
 use pyo3::{PyClassInitializer, prelude::*, types::PyType};

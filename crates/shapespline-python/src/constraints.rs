@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Corners, directions and a largest deviation of fair curves, as users give them.
 
 use pyo3::{

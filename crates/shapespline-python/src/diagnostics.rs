@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! What a search did, for Python.
 
 use pyo3::{prelude::*, types::PyTuple};

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! What is refused, as Python exceptions: `shapespline.InputError` says the argument, the index and the
 //! value in attributes, so that nobody parses its text.
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! `FairSpline`: what is particular to fair curves.
 
 use pyo3::{

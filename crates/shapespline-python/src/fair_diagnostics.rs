@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! What the search for a `FairSpline` did, for Python.
 
 use pyo3::{

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! `fairness`: the measures of fairness of any curve.
 
 use pyo3::{prelude::*, types::PyTuple};

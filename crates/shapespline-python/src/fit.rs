@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! From the arguments of a family's constructors to its curve, or to the exception.
 
 use std::sync::Arc;

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! The Python face of shapespline: arrays in and out, options by name, errors to exceptions.
 //!
 //! No mathematics lives here. Every space curve is a `SpaceCurve`; a family adds its own

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! `fit_many`: ragged collections of curves, fitted in parallel.
 //!
 //! The Python function of that name (`python/shapespline/_many.py`) fills in the defaults of each

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! `NuSpline`: what is particular to ν-splines.
 
 use pyo3::{PyClassInitializer, prelude::*, types::PyType};

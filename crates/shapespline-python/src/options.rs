@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Options that users write by name.
 
 use pyo3::{exceptions::PyTypeError, prelude::*};

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Results as fresh arrays, without a copy where they are large.
 
 use numpy::{PyArray1, PyArrayDyn, PyArrayMethods};

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Pickles: kind, version, what is pickled in postcard's form, and a checksum. Floats keep every bit.
 
 use std::sync::Arc;

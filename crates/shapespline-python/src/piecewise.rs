@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! `PiecewiseBezier`: a curve made elsewhere, as its Bézier pieces.
 
 use std::sync::Arc;

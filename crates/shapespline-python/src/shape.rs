@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! What the package `shapespline` wraps: checks of any curve, inflection counts, shapes of polygons.
 
 use std::sync::Arc;

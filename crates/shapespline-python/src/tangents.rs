@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! End tangents as a small value.
 
 use std::hash::{Hash, Hasher};

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! `TensionSpline`: what is particular to C² tension cubics.
 
 use numpy::PyArray1;

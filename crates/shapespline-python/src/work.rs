@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Long work: without the interpreter lock, on a thread pool that survives `fork`, and with Ctrl-C.
 
 use std::{

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! How much segments bend, to about a thousandth: a search compares curves by it again and again.
 
 use shapespline_geometry::{DVec3, DataPolygon, length};

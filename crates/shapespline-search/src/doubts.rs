@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Segments of which rounding hides whether they keep the shape.
 //!
 //! A search asks more of a curve than that nothing is violated: that everything is proved. Mostly more

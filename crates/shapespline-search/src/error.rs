@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Why there is no curve.
 
 use shapespline_banded::SolveError;

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! What a family of splines has to say to be searched.
 
 use std::ops::Range;

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Fewer criteria never make a curve that bends more.
 //!
 //! Tension that only a further criterion would have called for can leave the curve fairer than less tension

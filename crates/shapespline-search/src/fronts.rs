@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Violations that travel: in long regular data every raise can break the next segment, and that one
 //! the next. What the front has done so far is then done at once as far ahead as it has come.
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Tensions lowered by a common factor, found by bisection.
 
 use shapespline_geometry::DataPolygon;

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! What the curves of all families have in common.
 
 use shapespline_criteria::{Checker, Criteria, ShapeReport, Tolerances};

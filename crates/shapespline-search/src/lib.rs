@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Automatic tension: raise it where a shape criterion fails, then lower it.
 //!
 //! One search serves every family of splines with a tension at each node. A family says how tension

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Lowering tension again: growth overshoots, and what is not needed is given back.
 //!
 //! Every tension is lowered **by itself**, those at the sharpest ends of segments first, to the least value that keeps the shape while

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Many curves at once: streamlines, tool paths, tracks.
 
 use std::{borrow::Cow, ops::Range};

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! How to search.
 
 use shapespline_criteria::{Checker, Criteria, Tolerances};

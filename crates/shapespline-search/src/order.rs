@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! The order in which tensions are lowered, and which of them tie.
 //!
 //! Keys are made of lengths, curvatures and angles around a node, rounded, so that neither the direction in

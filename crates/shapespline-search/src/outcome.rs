@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! What a search did.
 
 use shapespline_criteria::{Faults, ShapeReport};

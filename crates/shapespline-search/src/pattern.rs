@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Which tensions mend which fault: the increase patterns of paper 001, (5.58)–(5.60).
 
 use shapespline_criteria::Faults;

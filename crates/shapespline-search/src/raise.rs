@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Raising tension until no criterion fails: paper 001, (5.58)–(5.65).
 
 use crate::{

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! The search: solve, check, raise; at the end solve and check everything anew.
 
 use std::ops::ControlFlow;

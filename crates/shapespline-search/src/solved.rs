@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! A family whose tangents solve a system, kept solved while its tension changes.
 
 use std::ops::Range;

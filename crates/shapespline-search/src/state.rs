@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! The curve of a search as it is, and what is known of it.
 
 use std::{

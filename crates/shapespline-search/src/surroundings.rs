@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! What a data polygon looks like from a node, in whichever direction its points are numbered.
 
 use std::cmp::Ordering;

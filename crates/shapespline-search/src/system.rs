@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Families whose tangents solve a tridiagonal system.
 
 use std::ops::Range;

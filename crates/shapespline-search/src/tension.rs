@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Tension as users give it: checked once, for every family.
 
 use shapespline_geometry::{DataPolygon, InputError, PiecewiseCubic};

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Solving a system while its tension changes: the rows as they were made, and looks at other tension.
 
 use std::{cell::Cell, convert::Infallible, ops::Range};

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Shows that a tension cubic is C² where the ν-spline of the same image is not.
 //!
 //! ```sh

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! C² tension cubics: interpolation of points in space by a curve with continuous second derivative,
 //! with tension found automatically.
 //!

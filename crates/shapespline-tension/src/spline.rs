@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! The C² tension cubic interpolant.
 
 use std::ops::ControlFlow;

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Fits points from a CSV file (`x,y,z` a line) and prints what the C² cubic spline does to their
 //! shape, and what the shape-preserving ν-spline needs to keep it.
 //!

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Times building and evaluating the families: nanoseconds a point, the best of several runs.
 //!
 //! ```sh

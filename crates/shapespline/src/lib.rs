@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Splines that interpolate data **and keep its shape**.
 //!
 //! This crate re-exports the crates of the workspace under one name; each can be used alone.

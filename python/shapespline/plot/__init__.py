@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """Figures of curves, functions and shape reports, with Matplotlib.
 
 Every function draws into the Axes ``ax``, or into a new figure, and returns the Axes: set titles,

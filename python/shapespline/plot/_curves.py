@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """Curves: the curve itself, its curvature comb, curvature and torsion over the parameter."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """Functions of one variable, with their data and derivatives."""
 
 from __future__ import annotations

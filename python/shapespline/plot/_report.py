@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """The report of a shape check as a map of the segments."""
 
 from __future__ import annotations

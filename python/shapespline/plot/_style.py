@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+
 """What all figures share: one colour for one thing, and Axes to draw into."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Runs one input of a fuzz target: `cargo run -p shapespline-tests --example fuzz_one -- TARGET FILE`.
 #![allow(clippy::unwrap_used, reason = "a tool for developers")]
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! The criteria on one cubic in whole numbers: nothing is rounded, and roots are decided by squaring.
 //!
 //! All numbers are multiples of `2^−SHIFT`; each formula is homogeneous, so its sign needs no more.

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Every family behind one face, so that every property is tested for all of them.
 
 use shapespline::{

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Polygons that have been hard for somebody: deterministic, by seed.
 
 use shapespline::prelude::{Boundary, DVec3, DataPolygon, Parametrization};

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Data for the tests that need more than one crate.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "test code")]
 

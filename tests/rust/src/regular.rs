@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Long regular polygons: what repeats itself fails everywhere at once, or one repeat after the other.
 
 use shapespline::prelude::*;

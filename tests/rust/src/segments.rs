@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Random segments in random polygons, in which every criterion applies often and holds about as often
 //! as not.
 

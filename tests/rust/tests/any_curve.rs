@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Curves that were not made here: degree, pieces, weights and where they come from do not matter.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "test code")]
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Unusable input is refused with the argument, the place and the value.
 #![allow(clippy::unwrap_used, reason = "test code")]
 

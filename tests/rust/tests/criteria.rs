@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! The criteria beyond single verdicts: misprints, margins, invariance, information, polygons.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "test code")]
 

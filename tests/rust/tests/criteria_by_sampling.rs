@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Verdicts against dense sampling: code of its own, from positions and derivatives at 2,001 places a
 //! segment, without Bézier legs.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "test code")]

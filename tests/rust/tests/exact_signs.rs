@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Verdicts on nearly degenerate cubics against whole numbers.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "test code")]
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Fair curves: the numbers to reach on shared data, and the properties on generated polygons. The
 //! verdicts are checked by dense sampling of exported control points, with code of its own.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "test code")]

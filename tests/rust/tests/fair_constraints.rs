@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Corners, directions and a distance from the polygon: what else a fair curve can be asked for. Held by
 //! formulas of the tests' own.
 #![allow(clippy::unwrap_used, reason = "test code")]

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! What every family promises, on every kind of polygon.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "test code")]
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! The fuzz targets as an ordinary test: every input that was ever a finding, and thousands of generated ones.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "test code")]
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Inflection counts: the examples and theorems of paper 002, sections 4, 5 and 7.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "test code")]
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! The most inflections of piecewise cubics over all directions, against samples, and against what must
 //! not change it.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "test code")]

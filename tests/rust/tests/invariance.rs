@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Moving the data moves the curve, and nothing else.
 #![allow(clippy::unwrap_used, reason = "test code")]
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Three points on a line: the torsion and the coplanarity that Definition 8.2 of paper 002 asks of the
 //! two segments together, against dense sampling.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "test code")]

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Results printed in paper 001 (specification, section 1), reproduced.
 #![allow(clippy::unwrap_used, reason = "test code")]
 

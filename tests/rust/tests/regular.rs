@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Long regular polygons: solved by default, in rounds that hardly grow with their length, and the same
 //! everywhere in the middle.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "test code")]

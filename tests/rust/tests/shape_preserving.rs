@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Shape-preserving ν-splines on data that have been hard for somebody.
 //!
 //! The verdicts here are the library's own; `tests/test_shape_preserving.py` checks the same kinds of

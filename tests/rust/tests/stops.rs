@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! A curve that stops has no shape to keep: the criterion "regular", against planted stops and sampled speeds.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "test code")]
 

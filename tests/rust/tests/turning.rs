@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! At every point the curve turns as the polygon does: Manni's (i.3) and Gautam's (12.1), computed here from
 //! derivatives at the points, on both sides, without the criteria of the library.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "test code")]

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! The method: moves of whole blocks between the bounds, and solves only where something moved.
 
 use super::{BLOCK, Block, BoxQpError, Place, TridiagonalBoxQp, gradient};

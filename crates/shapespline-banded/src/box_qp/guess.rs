@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Guesses of the active set: where the iteration begins, and where it begins anew.
 
 use super::active_set::ActiveSet;

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! One node: the angles of its tangent with the two chords, and what a split of their sum makes of them.
 
 use shapespline_geometry::{DVec3, DataPolygon, length, normalize};

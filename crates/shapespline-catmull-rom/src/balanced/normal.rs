@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! The steps of Newton's and of Gauss and Newton's method.
 
 use std::ops::Range;

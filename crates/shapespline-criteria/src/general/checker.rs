@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! The checker for curves that were not made here.
 
 use std::ops::ControlFlow;

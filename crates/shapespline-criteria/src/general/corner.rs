@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Corners at the points: the part of turning that no segment sees of itself.
 //!
 //! The tangent at a node is held against the chord of its own segment, for on the other side of the node the

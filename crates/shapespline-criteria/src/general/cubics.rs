@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Segments that are polynomial cubics, or consist of them: decided by their legs.
 
 use shapespline_geometry::DVec3;

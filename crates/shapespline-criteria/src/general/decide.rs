@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! The verdicts on a segment of any degree.
 
 use glam::DVec3;

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Margins on segments of any degree: how far from failing.
 //!
 //! With `γ` over the segment's local parameter, `σ₂ = max ‖γ''‖`, `σ₃ = max ‖γ'''‖`:

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Curves of any degree, polynomial or rational, with any number of pieces between two points.
 //!
 //! The criteria are the same as for cubics. With a curve `A/w` in homogeneous form, `w > 0`,

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Segments that consist of several pieces, without a curve around them.
 
 use glam::DVec3;

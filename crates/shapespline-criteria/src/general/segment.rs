@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! The curve between two data points as polynomials.
 
 use glam::{DVec3, DVec4};

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Inflection along every mixture of the two binormal vectors, for `ω` of any degree.
 //!
 //! Let `v = (x, y) = (ω·P, −ω·P')`: it begins in the open first quadrant and ends in the open third.

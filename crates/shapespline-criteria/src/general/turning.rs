@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Turning at the two nodes of a segment of any degree, on this segment's side of them.
 
 use glam::DVec3;

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Inflection counts of polygons and curves (paper 002, sections 4, 5 and 7).
 //!
 //! Seen from a direction `w` a polygon shows `S(w·V_1, …, w·V_{n−1})` inflections with

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! The real roots of low-degree polynomials in Bernstein form, none left out.
 
 /// Subdivision ends at intervals of `2^{−44}`: what is still open there is a root to rounding.

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! What the sphere of directions is cut by: a curve as the sequence of vectors whose signs count, and of
 //! the arcs between them.
 

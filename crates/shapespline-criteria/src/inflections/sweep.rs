@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! The most inflections over all directions, by walks along every curve that bounds a cell.
 //!
 //! The count is constant on each open cell into which the sphere of directions is cut by the great

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! One walk: its events are crossed in order, and what is seen between them is kept.
 
 use glam::DVec3;

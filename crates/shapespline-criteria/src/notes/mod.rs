@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! What paper 002 says beyond the criteria, as information: it does not enter a verdict.
 //!
 //! - *Compatibility* (12.1): the tangent at a node, seen along `P_i`, lies strictly between the two

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Three points on a line (paper 002, Definition 8.2): the conditions on the two segments between them,
 //! with the middle point left out.
 

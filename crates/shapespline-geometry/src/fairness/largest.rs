@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! The largest curvature alone, where the other measures are not asked for: most segments are done with by a
 //! bound.
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! How fair a curve is: length, bending energy, variation and extrema of its curvature.
 //!
 //! Extrema of curvature are the sign changes of a polynomial (for a cubic of degree five in the plane

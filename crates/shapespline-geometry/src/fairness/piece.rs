@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! What one Bézier piece contributes: exact extrema of its curvature, and its integrals.
 
 use glam::{DVec3, DVec4};

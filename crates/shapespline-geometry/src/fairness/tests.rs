@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 #![allow(clippy::unwrap_used)]
 use std::f64::consts::{FRAC_1_SQRT_2, PI};
 

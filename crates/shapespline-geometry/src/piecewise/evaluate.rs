@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Values of a piecewise cubic: the one formula of all families.
 
 use std::array;

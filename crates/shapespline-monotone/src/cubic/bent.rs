@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Stretches with convex and concave intervals: bounds of their slopes, and steps that respect them.
 //!
 //! Such an interval bounds the slopes at its ends by its secant, and its energy ([`Ramp`]) grows as `1/room` towards the

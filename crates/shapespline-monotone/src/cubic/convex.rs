@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! What is asked of convexity: of which intervals, and whether a function through the data can have it.
 //!
 //! A function that is convex on an interval has slopes at its ends on either side of the secant. So between two convex

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Slopes that are held: at the ends, at given points, and the wrapping of periodic data.
 
 use super::CubicOptions;

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! A continuous second derivative beside turns and flats.
 //!
 //! At a node of slope 0 the second derivative is prescribed: 0 beside a flat, at a turn the smaller of the two that the

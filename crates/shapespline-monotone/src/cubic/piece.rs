@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! The least energy of one interval, as a function of the slopes at its ends: closed forms.
 //!
 //! In the direction of the data: width `h`, rise `d > 0`, secant `δ = d/h`, slopes `m₀, m₁ ≥ 0` with roots `r₀, r₁`,

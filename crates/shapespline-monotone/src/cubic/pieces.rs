@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! The cubic pieces of a least-energy interpolant: knots, values, slopes and second derivatives.
 
 use super::layer::between;

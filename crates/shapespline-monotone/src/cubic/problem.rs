@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! The data as the least-energy program sees them: intervals in the direction of their data, and slopes that are held.
 
 use super::layer::Layer;

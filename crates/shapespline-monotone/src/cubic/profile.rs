@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! The second derivative of an interval where convexity is asked, from its least energy to one that is continuous.
 //!
 //! **Least energy.** With the slopes at the points an interval has the `y''` of least energy: that of

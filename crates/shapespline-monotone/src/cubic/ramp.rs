@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! The least energy of an interval on which the function is convex or concave, in the slopes at its ends: closed forms.
 //!
 //! In the direction of the data: width `h`, secant `δ`, slopes `m₀ < δ < m₁` of a convex interval, so that the tangents

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! The slopes of least energy on a stretch of data: scalar sweeps, then Newton's method on a tridiagonal system.
 //!
 //! A stretch is a run of intervals between two nodes whose slopes are held (turns and flats, given slopes) or that end

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Many queries at once, each in a segment of its own, and the step that all take.
 
 use super::{FEW, STEPS};

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Sorted queries on one segment: what depends on the segment alone is done once, and neighbours tell where to start.
 
 use super::lanes::{Unit, many, step};

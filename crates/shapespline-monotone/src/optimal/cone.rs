@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! The cone of one segment and the linear algebra on it, four segments at a time.
 //!
 //! **Cone.** The derivative over the secant is `p = Σ pₖ tᵏ(1−t)⁴⁻ᵏ`. It is ≥ 0 on [0, 1] exactly when

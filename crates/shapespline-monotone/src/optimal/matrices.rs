@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! The small matrices of one segment: pairs of a symmetric 3×3 and a symmetric 2×2 matrix, as upper triangles row by
 //! row (00 01 02 11 12 22, then 00 01 11), in closed form and without branches.
 

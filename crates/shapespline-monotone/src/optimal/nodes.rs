@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! What is fixed at the nodes, and the block-tridiagonal system of what is free.
 
 use super::cone::{Given, Lane, W};

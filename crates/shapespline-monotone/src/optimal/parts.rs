@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Conditions on parts of a segment: the program as other solvers get it, for references and second opinions.
 
 use crate::data::Data;

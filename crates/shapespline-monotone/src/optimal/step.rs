@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! The iteration's working memory and one step of it.
 
 use super::cone::{self, Aim, Factors, Given, State, W};

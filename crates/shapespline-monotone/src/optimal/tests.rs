@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Against Clarabel on finely divided segments.
 #![allow(clippy::unwrap_used)]
 use super::*;

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! All of the quartic's numbers in one pass over the data: tiles that stay in a core's first cache.
 
 use super::Shape;

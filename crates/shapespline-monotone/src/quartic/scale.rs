@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! The largest admissible λ of a segment: conditions (12), (13), theorem 1 and the four cases.
 
 use crate::record::TILE;

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! From the neighbourhood of the optimum to it: Newton's method with the active constraints held.
 //!
 //! Where a rise is smaller than its multiplier it is 0 at the optimum, and so are the slopes at its ends; the same holds

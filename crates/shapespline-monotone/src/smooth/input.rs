@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Checks of the data to be smoothed; near-equal abscissae merged, everything scaled by powers of two.
 
 use super::interior::Task;

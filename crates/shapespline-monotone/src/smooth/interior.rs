@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! The smoothing program by a primal–dual interior point, and the unconstrained smoothing spline.
 //!
 //! Unknowns are the first value, the rises and the slopes; rises, slopes and the distances from the bounds are kept

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! The penalised energy of one interval as a quadratic model in its end slopes and its rise.
 //!
 //! The least energy of an interval (see `cubic/piece.rs`) is convex in `(m₀, m₁, d)` jointly. Its Hessian is a sum of

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Optima for given penalties, and the choice of the penalty: by cross-validation or by the residual it leaves.
 
 use super::finish::{Optimum, active, finish};

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Isotonic regression: the monotone values nearest to the data, what smoothing tends to as its penalty falls to 0.
 
 /// A run of data with one value.

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Newton's system of the smoothing program, by orthogonal elimination from node to node.
 //!
 //! The Hessian is a sum of squares: `2w` on the values, the rows of [`Model`] on the intervals, and the stiffness of

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Data for the tests: the paper's neighbours' sets and random ones.
 #![allow(dead_code, clippy::unwrap_used)]
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! What a curve was made of, and how: attributes, and the check of its shape.
 
 use numpy::PyArray1;

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Position, derivatives, curvature, torsion and frame at any parameters.
 
 use pyo3::{IntoPyObjectExt, prelude::*};

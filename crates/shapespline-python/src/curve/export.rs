@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! The same curve in other forms: Bézier points, SciPy's B-spline and piecewise polynomial.
 
 use numpy::PyArray1;

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! A curve beside the input that it was fitted to.
 
 use std::ops::Deref;

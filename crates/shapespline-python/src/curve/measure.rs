@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Arc length and samples.
 
 use pyo3::prelude::*;

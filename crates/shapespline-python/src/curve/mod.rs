@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! `SpaceCurve`: what every space curve is and can do, whatever its family.
 //!
 //! A family implements [`Curve`] for its Rust type, gets a [`Family`] tag and a Python class of its

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Arrays of f64 that nobody else can change the shape of.
 
 use numpy::{

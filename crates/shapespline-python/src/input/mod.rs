@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Numbers and arrays that come in. Every error names the argument.
 
 use pyo3::{

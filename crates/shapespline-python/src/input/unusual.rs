@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Arrays of unusual things: masked values, dates, Python objects.
 
 use numpy::{PyArrayDyn, PyUntypedArray, PyUntypedArrayMethods};

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! The paper's curves themselves.
 
 use pyo3::prelude::*;

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! `MonotoneCubic`, and the least energy that it has.
 
 use pyo3::{IntoPyObjectExt, PyClassInitializer, prelude::*};

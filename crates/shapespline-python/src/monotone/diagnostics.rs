@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! How a monotone fit went, for Python.
 
 use pyo3::prelude::*;

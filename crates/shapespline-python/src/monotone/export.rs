@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! The same function as SciPy's objects.
 
 use std::borrow::Cow;

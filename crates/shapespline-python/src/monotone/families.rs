@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! The constructors of the quartic and the quintic.
 
 use std::{ops::Range, sync::Arc};

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! One function per column, of any of the kinds.
 
 use std::{convert::Infallible, ops::ControlFlow};

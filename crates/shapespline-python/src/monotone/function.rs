@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! `PiecewisePolynomial`: what every function of one variable is and can do.
 
 use std::sync::Arc;

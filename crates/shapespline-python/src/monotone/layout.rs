@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Arrays with an axis of interpolation, as columns and back.
 
 use pyo3::prelude::*;

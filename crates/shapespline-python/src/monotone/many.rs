@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Many data sets with their own x in one call: `fit_many_monotone`.
 
 use pyo3::{exceptions::PyTypeError, prelude::*};

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Monotone interpolation in Python.
 //!
 //! [`function`] is what every function can do, [`spline`] what the interpolants add, [`families`] their

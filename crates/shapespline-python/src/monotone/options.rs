@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Options of the monotone schemes by name, and errors with the place in y.
 
 use pyo3::{

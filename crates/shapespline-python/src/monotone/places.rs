@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Places at which many rows are asked: one for all, the same for each, or its own for each.
 
 use pyo3::prelude::*;

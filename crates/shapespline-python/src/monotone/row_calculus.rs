@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Derivatives, integrals and solutions of many rows.
 
 use pyo3::prelude::*;

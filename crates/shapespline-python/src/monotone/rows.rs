@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Functions of many rows, each with its own knots.
 
 use std::sync::Arc;

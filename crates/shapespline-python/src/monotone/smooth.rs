@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! `smooth_monotone`, and the record of how it smoothed.
 
 use pyo3::{exceptions::PyTypeError, prelude::*};

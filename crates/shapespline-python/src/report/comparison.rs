@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! How fair a curve is beside the C² cubic spline: what a printed report says of it.
 
 use std::borrow::Cow;

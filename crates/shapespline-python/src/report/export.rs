@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! The report in other forms: plain data, a data frame, a figure, a table for notebooks.
 
 use pyo3::{

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! The shape report for Python: what was found, and what is made of it when asked for.
 //!
 //! [`record`] is one line of it, [`subject`] what it is about, [`comparison`] how fair the curve is, [`export`] its

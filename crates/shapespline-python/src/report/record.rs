@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! The record of one criterion on one segment.
 
 use std::hash::{Hash, Hasher};

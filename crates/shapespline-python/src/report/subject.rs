@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! What a report is about: one of our curves, or points and a curve made elsewhere.
 
 use std::sync::Arc;

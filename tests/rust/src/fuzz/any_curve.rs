@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Curves that were not made here, and the criteria on them.
 
 use shapespline::{

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! From the bytes of an input to numbers, points and options.
 
 use shapespline::prelude::*;

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Curves of given tension, and everything a curve can be asked.
 
 use shapespline::{geometry::InputError, prelude::*};

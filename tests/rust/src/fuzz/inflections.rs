@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Inflection counts of polygons and curves.
 
 use shapespline::criteria::{

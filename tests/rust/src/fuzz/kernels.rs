@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Solvers and polynomials: what the families stand on.
 
 use shapespline::{

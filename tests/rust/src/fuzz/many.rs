@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Many curves and functions at once: offsets, rows, columns.
 
 use shapespline::{

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! What the fuzzers run: one function a target, from bytes to asserted properties.
 //!
 //! Two drivers call the same functions: `fuzz/` (cargo-fuzz, guided by coverage, on nightly) and

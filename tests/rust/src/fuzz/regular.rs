@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Long regular polygons and batches of every size at which work is cut into blocks.
 
 use shapespline::prelude::*;

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Automatic tension, of every family and strategy.
 
 use shapespline::{geometry::length, prelude::*};

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Stored forms: bytes that claim to be a curve, a function or a report.
 
 use serde::{Serialize, de::DeserializeOwned};

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Least energy of convex data and of mixed ones, against duality and another program.
 use super::convex::*;
 use super::*;
