@@ -83,12 +83,12 @@ docs: extension $(VENV)/.docs
 	rm -rf site/rust site/python
 	mkdir -p site
 	cp -r "$${CARGO_TARGET_DIR:-target}/doc" site/rust
-	$(BIN)/python scripts/gallery.py
+	$(BIN)/python python/docs/scripts/gallery.py
 	$(BIN)/python -m sphinx -W --keep-going -q -b html -c python/docs python site/python
 	@echo "open site/python/docs/index.html (Python) or site/rust/shapespline/index.html (Rust)"
 
 packages: $(VENV)/.python | cargo
-	$(BIN)/python scripts/packages.py
+	$(BIN)/python .ci/packages.py
 
 # NLopt is built from source, with cmake: left out where there is none.
 powerset: | cargo
@@ -97,21 +97,21 @@ powerset: | cargo
 	cargo hack check --workspace --exclude shapespline-python --feature-powerset --no-dev-deps \
 		$(if $(shell command -v cmake),,--exclude-features nlopt)
 
-# What is learnt goes to out/fuzz, findings to fuzz/artifacts; fuzz/corpus holds what was once found.
+# What is learnt goes to out/fuzz, findings to tests/fuzz/artifacts; tests/fuzz/corpus holds what was once found.
 fuzz: | cargo
 	@cargo +nightly fuzz --version >/dev/null 2>&1 || { \
 		echo "make: cargo-fuzz or nightly is missing: rustup toolchain install nightly; cargo install cargo-fuzz" >&2; \
 		exit 1; }
-	for target in $$(ls fuzz/corpus); do \
+	for target in $$(ls tests/fuzz/corpus); do \
 		mkdir -p out/fuzz/$$target && \
-		cargo +nightly fuzz run $$target out/fuzz/$$target fuzz/corpus/$$target -- \
+		cargo +nightly fuzz run --fuzz-dir tests/fuzz $$target out/fuzz/$$target tests/fuzz/corpus/$$target -- \
 			-max_total_time=$(FUZZ) -timeout=10 -max_len=600 -rss_limit_mb=4096 || exit 1; \
 	done
 
 clean:
 	rm -rf $(VENV) target out site python/docs/images/gallery .pytest_cache .mypy_cache .ruff_cache .hypothesis
 	rm -f python/shapespline/_core*.so python/shapespline/_core*.pyd
-	find python tests scripts -name __pycache__ -type d -prune -exec rm -rf {} +
+	find .ci python tests -name __pycache__ -type d -prune -exec rm -rf {} +
 
 # Always asked: maturin and cargo know what changed better than a list of files here would.
 extension: $(VENV)/.requirements | cargo
@@ -130,12 +130,12 @@ $(VENV)/.python:
 	$(PYTHON) -m venv $(VENV)
 	touch $@
 
-$(VENV)/.requirements: pyproject.toml scripts/requirements.py $(VENV)/.python
-	$(BIN)/python scripts/requirements.py test > $(VENV)/requirements.txt
+$(VENV)/.requirements: pyproject.toml .ci/requirements.py $(VENV)/.python
+	$(BIN)/python .ci/requirements.py test > $(VENV)/requirements.txt
 	$(BIN)/python -m pip install --quiet --requirement $(VENV)/requirements.txt
 	touch $@
 
 $(VENV)/.docs: pyproject.toml $(VENV)/.requirements
-	$(BIN)/python scripts/requirements.py docs > $(VENV)/requirements-docs.txt
+	$(BIN)/python .ci/requirements.py docs > $(VENV)/requirements-docs.txt
 	$(BIN)/python -m pip install --quiet --requirement $(VENV)/requirements-docs.txt
 	touch $@

@@ -352,11 +352,11 @@ def test_verdicts_do_not_depend_on_extreme_scales(scale, degree, rng):
 
 
 def test_the_page_on_others_curves_says_what_the_script_prints():
-    sys.path.insert(0, str(ROOT / "scripts"))
+    sys.path.insert(0, str(ROOT / "python" / "docs" / "scripts"))
     try:
         import shape_of_others
     finally:
-        sys.path.remove(str(ROOT / "scripts"))
+        sys.path.remove(str(ROOT / "python" / "docs" / "scripts"))
     page = (ROOT / "python" / "docs" / "shape-of-others.md").read_text(encoding="utf-8")
     assert shape_of_others.table() in page
     stems = {path.stem for path in polygons.DATA.glob("*.csv")}

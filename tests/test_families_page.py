@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
 
-"""python/docs/families.md says what scripts/families_table.py finds."""
+"""python/docs/families.md says what python/docs/scripts/families_table.py finds."""
 
 import sys
 from pathlib import Path
@@ -13,7 +13,7 @@ PAGE = ROOT / "python" / "docs" / "families.md"
 
 @pytest.fixture(scope="module")
 def found():
-    sys.path.insert(0, str(ROOT / "scripts"))
+    sys.path.insert(0, str(ROOT / "python" / "docs" / "scripts"))
     try:
         import families_table
     finally:

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
 
-"""python/docs/functions-compared.md says what scripts/functions_table.py finds."""
+"""python/docs/functions-compared.md says what python/docs/scripts/functions_table.py finds."""
 
 import sys
 import warnings
@@ -13,7 +13,7 @@ ROOT = Path(__file__).parent.parent
 
 @pytest.fixture(scope="module")
 def script():
-    sys.path.insert(0, str(ROOT / "scripts"))
+    sys.path.insert(0, str(ROOT / "python" / "docs" / "scripts"))
     try:
         import functions_table
     finally:

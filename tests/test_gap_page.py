@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
 
-"""python/docs/fair-splines.md says what scripts/gap_table.py finds."""
+"""python/docs/fair-splines.md says what python/docs/scripts/gap_table.py finds."""
 
 import sys
 from pathlib import Path
@@ -15,7 +15,7 @@ PAGE = ROOT / "python" / "docs" / "fair-splines.md"
 
 @pytest.fixture(scope="module")
 def script():
-    sys.path.insert(0, str(ROOT / "scripts"))
+    sys.path.insert(0, str(ROOT / "python" / "docs" / "scripts"))
     try:
         import gap_table
     finally:

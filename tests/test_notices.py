@@ -11,10 +11,13 @@ ROOT = Path(__file__).parent.parent
 
 
 def test_every_linked_crate_has_its_licence_in_the_file(monkeypatch):
-    monkeypatch.syspath_prepend(str(ROOT / "scripts"))
-    notices = pytest.importorskip("notices")
+    if not (ROOT / ".ci").exists():
+        pytest.skip("not in the tree")
+    monkeypatch.syspath_prepend(str(ROOT / ".ci"))
+    import notices
+
     written = notices.OUT.read_text(encoding="utf-8")
-    assert written == notices.notices(), "run: python scripts/notices.py"
+    assert written == notices.notices(), "run: python .ci/notices.py"
     linked = dict(notices.linked())
     # What is known to be linked in, under licences that ask for the notice.
     assert {"numpy", "pyo3", "mimalloc", "ndarray", "rayon"} <= set(linked)

@@ -68,7 +68,7 @@ def test_links_and_pictures_exist(page):
     text = page.read_text(encoding="utf-8")
     targets = re.findall(r"\]\(([^)#:\s]+)(?:#[^)]*)?\)", text)
     targets += re.findall(r"^:::+\{figure\} (\S+)$", text, re.MULTILINE)
-    drawn = "images/gallery/"  # by scripts/gallery.py, when the site is built
+    drawn = "images/gallery/"  # by python/docs/scripts/gallery.py, when the site is built
     missing = [t for t in targets if not t.startswith(drawn) and not (page.parent / t).exists()]
     assert missing == []
 
@@ -86,7 +86,7 @@ def test_every_page_is_in_the_table_of_contents():
 
 
 def test_the_gallery_shows_every_figure_that_is_drawn(tmp_path, monkeypatch):
-    monkeypatch.syspath_prepend(str(ROOT / "scripts"))
+    monkeypatch.syspath_prepend(str(ROOT / "python" / "docs" / "scripts"))
     import gallery
 
     drawn = {path.name for path in gallery.draw_all(tmp_path)}

@@ -56,7 +56,7 @@ fn every_kept_input_and_thousands_of_generated_ones() {
 }
 
 fn survive_all(target: &str, mut random: Random) {
-    let kept = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fuzz/corpus").join(target);
+    let kept = Path::new(env!("CARGO_MANIFEST_DIR")).join("../fuzz/corpus").join(target);
     let mut files: Vec<_> =
         std::fs::read_dir(kept).unwrap().map(|file| file.unwrap().path()).collect();
     files.sort();

@@ -2,8 +2,8 @@
 
 //! What the fuzzers run: one function a target, from bytes to asserted properties.
 //!
-//! Two drivers call the same functions: `fuzz/` (cargo-fuzz, guided by coverage, on nightly) and
-//! `tests/fuzz.rs` (an ordinary test: it replays every input kept in `fuzz/corpus` and runs some
+//! Two drivers call the same functions: `tests/fuzz/` (cargo-fuzz, guided by coverage, on nightly) and
+//! `tests/rust/tests/fuzz.rs` (an ordinary test: it replays every input kept in `tests/fuzz/corpus` and runs some
 //! thousands of generated ones). A target panics where a property fails; what it asserts is written at
 //! its function.
 
@@ -23,7 +23,7 @@ pub use bytes::Bytes;
 /// A target: its name, and what it does with the bytes of an input.
 pub type Target = (&'static str, fn(&[u8]));
 
-/// Every target, by the name of its folder in `fuzz/corpus`.
+/// Every target, by the name of its folder in `tests/fuzz/corpus`.
 pub const TARGETS: [Target; 9] = [
     ("any_curve", any_curve::run),
     ("curves", curves::run),

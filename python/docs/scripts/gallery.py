@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
 
-"""Draw the figures of the papers again: python scripts/gallery.py [DIR].
+"""Draw the figures of the papers again: python python/docs/scripts/gallery.py [DIR].
 
 The page python/docs/gallery.md describes each figure, so that it can be held beside the original.
 Dashed is the classical spline, solid the shape-preserving one, as in the papers.
@@ -19,7 +19,7 @@ from scipy.interpolate import BPoly
 import shapespline as ss
 from shapespline.plot._style import STYLE
 
-ROOT = Path(__file__).resolve().parent.parent
+ROOT = Path(__file__).resolve().parents[3]
 sys.path.insert(0, str(ROOT / "tests"))
 import cases
 import polygons

@@ -17,7 +17,7 @@ ROOT = Path(__file__).parent.parent
 OUT = ROOT / "THIRD-PARTY-LICENSES.txt"
 HEAD = """\
 Licences of the crates that are compiled into the Python module shapespline.
-Written by scripts/notices.py from Cargo.lock.
+Written by .ci/notices.py from Cargo.lock.
 """
 
 

@@ -4,7 +4,7 @@
 
 Run from the root of the repository, with SciPy installed; a test holds the page against it:
 
-    python scripts/shape_of_others.py
+    python python/docs/scripts/shape_of_others.py
 """
 
 import sys
@@ -21,7 +21,7 @@ from scipy.interpolate import (
 import shapespline as ss
 from shapespline._tables import read_points
 
-DATA = Path(__file__).resolve().parent.parent / "tests" / "data"
+DATA = Path(__file__).resolve().parents[3] / "tests" / "data"
 CRITERIA = ("convexity", "inflection", "torsion", "coplanarity", "collinearity")
 
 

@@ -4,7 +4,7 @@
 
 Run from the root of the repository; a test holds the page against it:
 
-    python scripts/families_table.py
+    python python/docs/scripts/families_table.py
 """
 
 import sys
@@ -16,7 +16,7 @@ import numpy as np
 
 import shapespline as ss
 
-sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "tests"))
+sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "tests"))
 import cases
 
 Array = np.ndarray

@@ -4,7 +4,7 @@
 
 Run from the root of the repository; a test holds the page against it, but for the times:
 
-    python scripts/functions_table.py
+    python python/docs/scripts/functions_table.py
 """
 
 import sys
@@ -18,7 +18,7 @@ from scipy.interpolate import Akima1DInterpolator, CubicSpline, PchipInterpolato
 
 import shapespline as ss
 
-ROOT = Path(__file__).resolve().parent.parent
+ROOT = Path(__file__).resolve().parents[3]
 sys.path.insert(0, str(ROOT / "tests"))
 import polygons
 
@@ -206,7 +206,7 @@ def table(heading: tuple[str, ...], texts: int, rows: list[list[str]]) -> str:
 
 def marked(name: str) -> tuple[str, str]:
     """Return the lines on the page between which a table stands."""
-    return f"<!-- begin {name}: scripts/functions_table.py -->\n", f"\n<!-- end {name} -->"
+    return f"<!-- begin {name}: functions_table.py -->\n", f"\n<!-- end {name} -->"
 
 
 def replaced(page: str, name: str, content: str) -> str:

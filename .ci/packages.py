@@ -2,7 +2,7 @@
 
 """Build what is published, and try each part as a stranger would: alone, and nowhere near the tree.
 
-    python scripts/packages.py [--python 3.10 …] [--pytest "-k published"] [--quick] [--built DIR]
+    python .ci/packages.py [--python 3.10 …] [--pytest "-k published"] [--quick] [--built DIR]
 
 The wheel (abi3: one for every CPython from 3.10 on) and the sdist are built once. For every
 CPython that is found (on PATH, or under pyenv) a clean environment gets the wheel and what the
@@ -85,8 +85,8 @@ def try_python(python: Path, package: Path, folder: Path, options: argparse.Name
     if options.quick:
         return
     # The tests, and the pages that they read; the module's sources stay behind.
-    left = shutil.ignore_patterns("rust", "shapespline", "__pycache__")
-    for part in ("tests", "scripts", "python"):
+    left = shutil.ignore_patterns("fuzz", "rust", "shapespline", "__pycache__")
+    for part in ("tests", "python"):
         shutil.copytree(ROOT / part, folder / part, ignore=left)
     for file in ("pyproject.toml", "README.md"):
         shutil.copy(ROOT / file, folder)
