@@ -34,6 +34,8 @@ PYTEST_ALL := $(BIN)/python -m pytest --numprocesses logical --dist worksteal
 PYTEST ?=
 # Arguments for the benchmark, for example: make bench BENCH=--quick
 BENCH ?=
+# The published crates, in the order of crates/README.md: each after those that it depends on.
+CRATES := $(addprefix shapespline-,geometry banded criteria search nu tension catmull-rom fair monotone) shapespline
 # Seconds for each fuzz target.
 FUZZ ?= 60
 
@@ -78,14 +80,20 @@ bench: extension
 	$(BIN)/python tests/bench/bench.py $(BENCH)
 
 # Sphinx with MyST-NB: python/docs/conf.py says why. The gallery's pictures are drawn anew, not kept in the repository.
+# The crates one after the other, from below: rustdoc links to another crate only if that was documented before.
+# What `make check` documented for the sake of its warnings (the extension, the tests) is no part of the site.
 docs: extension $(VENV)/.docs
-	RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps
-	rm -rf site/rust site/python
+	rm -rf "$${CARGO_TARGET_DIR:-target}/doc" site/rust site/python
+	for crate in $(CRATES); do \
+		RUSTDOCFLAGS="-D warnings" cargo doc --no-deps --package $$crate || exit 1; \
+	done
 	mkdir -p site
 	cp -r "$${CARGO_TARGET_DIR:-target}/doc" site/rust
 	$(BIN)/python python/docs/scripts/gallery.py
 	$(BIN)/python -m sphinx -W --keep-going -q -b html -c python/docs python site/python
-	@echo "open site/python/docs/index.html (Python) or site/rust/shapespline/index.html (Rust)"
+	echo '<meta http-equiv="refresh" content="0; url=python/docs/index.html">' > site/index.html
+	echo '<meta http-equiv="refresh" content="0; url=shapespline/index.html">' > site/rust/index.html
+	@echo "open site/index.html (Python) or site/rust/index.html (Rust)"
 
 packages: $(VENV)/.python | cargo
 	$(BIN)/python .ci/packages.py

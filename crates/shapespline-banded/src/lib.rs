@@ -9,6 +9,17 @@
 //! it solves a few rows with other coefficients, [`block_tridiagonal`] takes 2×2 blocks,
 //! [`BlockCholesky`] blocks of any size, open or cyclic, and [`box_qp`] minimises a quadratic form between
 //! bounds.
+//!
+//! ```
+//! use shapespline_banded::{DVec3, solve_tridiagonal};
+//!
+//! // x − y/2 = 0, −x/2 + y − z/2 = 1, −y/2 + z = 0, for three coordinates at once.
+//! let (lower, upper) = ([0.0, -0.5, -0.5], [-0.5, -0.5, 0.0]);
+//! let (mut diagonal, mut right) = ([1.0; 3], [DVec3::ZERO, DVec3::new(1.0, 2.0, 3.0), DVec3::ZERO]);
+//! solve_tridiagonal(&lower, &mut diagonal, &upper, &mut right)?;
+//! assert!((right[1] - DVec3::new(2.0, 4.0, 6.0)).length() < 1e-14);
+//! # Ok::<(), shapespline_banded::SolveError>(())
+//! ```
 
 mod block_cholesky;
 pub mod block_tridiagonal;
@@ -24,6 +35,7 @@ mod tridiagonal;
 pub use block_cholesky::{Block, BlockCholesky, NotPositiveDefinite};
 pub use cyclic::solve_cyclic;
 pub use error::SolveError;
+pub use glam::DVec3;
 pub use place::Place;
 pub use resolvable::{Resolvable, solve_once};
 pub use rows::{Row, Rows};

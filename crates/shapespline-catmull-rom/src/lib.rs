@@ -48,7 +48,7 @@
 //!
 //! ```
 //! use shapespline_catmull_rom::{CatmullRom, HandleOptions, Interpolant};
-//! use shapespline_geometry::{Boundary, DVec3, DataPolygon, Parametrization};
+//! use shapespline_catmull_rom::geometry::{Boundary, DVec3, DataPolygon, Parametrization};
 //!
 //! let points = vec![
 //!     DVec3::new(0.0, 0.0, 0.0),
@@ -74,6 +74,10 @@ mod stretch;
 mod tangents;
 
 pub use curve::{CatmullRom, Continuity, Directions, HandleOptions};
+/// Criteria, tolerances and the report.
+pub use shapespline_search::criteria;
+/// Points, their parameters and ends, and the evaluation of curves.
+pub use shapespline_search::geometry;
 pub use shapespline_search::{Fit, FitError, Interpolant, Status, Tension};
 
 /// The examples of the README are run as tests.

@@ -30,6 +30,20 @@
 //! 23 (2000), Problem (P) and (5.34)–(5.57); R. S. Gautam, *Shape preservation behavior of spline
 //! curves*, Definitions 3.1, 3.16, 5.4, 6.2, 8.2, 9.2, 10.1 and sections 12 and 13; T. N. T. Goodman,
 //! Computer Aided Geometric Design 8 (1991) 37–50, for inflection counts.
+//!
+//! ```
+//! use shapespline_criteria::geometry::{Boundary, DVec3, DataPolygon, Parametrization};
+//! use shapespline_criteria::{Criteria, Criterion, Tolerances, check};
+//!
+//! let points = vec![DVec3::ZERO, DVec3::X, DVec3::new(1.0, 1.0, 0.0), DVec3::new(1.0, 1.0, 1.0)];
+//! let polygon = DataPolygon::new(points, &Parametrization::Chordal, Boundary::ZeroCurvature)?;
+//! // Straight segments neither bend nor twist, so the twist of the data is missing.
+//! let straight = |i| [polygon.chord(i) / 3.0; 2];
+//! let report = check(&polygon, straight, Criteria::ALL, Tolerances::default());
+//! assert_eq!(report.count(Criterion::Torsion).violated, 1);
+//! println!("{report}");
+//! # Ok::<(), shapespline_criteria::geometry::InputError>(())
+//! ```
 
 mod calls;
 mod checker;
@@ -62,6 +76,8 @@ pub use inflections::{
 pub use notes::{NodeCondition, NodeRecord, Notes, Oscillation};
 pub use polygon_shape::{Extent, PolygonShape, polygon_shape};
 pub use report::{Count, Record, ShapeReport, Undecided};
+/// The points that curves are compared with, and curves of other origin.
+pub use shapespline_geometry as geometry;
 pub use stretch::{StretchCalls, StretchChecker};
 pub use window::WindowChecker;
 

@@ -32,7 +32,7 @@
 //!
 //! ```
 //! use shapespline_fair::{FairOptions, FairSpline, Status};
-//! use shapespline_geometry::{Boundary, DVec3, DataPolygon, Parametrization};
+//! use shapespline_fair::geometry::{Boundary, DVec3, DataPolygon, Parametrization};
 //!
 //! let points = [[0.0, 0.0, 0.0], [2.0, 0.0, 0.1], [4.0, 0.1, 0.1], [4.5, 0.4, 0.2], [4.6, 3.0, 0.2]];
 //! let points = points.map(DVec3::from).to_vec();
@@ -74,6 +74,10 @@ pub use constraints::Constraints;
 pub use energy::Energy;
 pub use options::FairOptions;
 pub use outcome::{Diagnostics, Fit, FitError, Method, Phase, Status, Step};
+/// Criteria, tolerances and the report.
+pub use shapespline_criteria as criteria;
+/// Points, their parameters and ends, and the evaluation of curves.
+pub use shapespline_geometry as geometry;
 pub use spline::FairSpline;
 
 /// The examples of the README are run as tests.

@@ -15,6 +15,21 @@
 //! Sources: M. I. Karavelas, P. D. Kaklis, *Spatial shape-preserving interpolation using
 //! ν-splines*, Numerical Algorithms 23 (2000); R. S. Gautam, *Shape preservation behavior of
 //! spline curves*.
+//!
+//! ```
+//! use shapespline_geometry::{Boundary, DVec3, DataPolygon, Parametrization, PiecewiseCubic, Side};
+//!
+//! let points = vec![DVec3::ZERO, DVec3::X, DVec3::new(1.0, 1.0, 0.0), DVec3::new(1.0, 1.0, 1.0)];
+//! let polygon = DataPolygon::new(points, &Parametrization::Chordal, Boundary::ZeroCurvature)?;
+//! assert_eq!(polygon.binormal(1), DVec3::Z); // the polygon turns to the left at node 1 …
+//! assert!(polygon.gamma(1) > 0.0); // … and twists to the right on segment 1
+//!
+//! // Handles of a third of each chord: the polygon itself, as a curve.
+//! let legs = (0..polygon.segments()).map(|i| [polygon.chord(i) / 3.0; 2]).collect();
+//! let curve = PiecewiseCubic::through(polygon, legs)?;
+//! assert_eq!(curve.evaluate(0.5, 0, Side::Right), DVec3::new(0.5, 0.0, 0.0));
+//! # Ok::<(), shapespline_geometry::InputError>(())
+//! ```
 
 mod arc_length;
 mod batch;

@@ -18,7 +18,7 @@
 //! E3–E5; G. M. Nielson, *Some piecewise polynomial alternatives to splines under tension*, 1974.
 //!
 //! ```
-//! use shapespline_geometry::{Boundary, DVec3, DataPolygon, Parametrization};
+//! use shapespline_nu::geometry::{Boundary, DVec3, DataPolygon, Parametrization};
 //! use shapespline_nu::{Interpolant, NuSpline, SearchOptions};
 //!
 //! let points = vec![
@@ -39,6 +39,10 @@
 mod spline;
 mod system;
 
+/// Criteria, tolerances and the report.
+pub use shapespline_search::criteria;
+/// Points, their parameters and ends, and the evaluation of curves.
+pub use shapespline_search::geometry;
 pub use shapespline_search::{
     Fit, FitError, Interpolant, SearchOptions, Status, Strategy, Tension,
 };

@@ -33,74 +33,7 @@ use shapespline_geometry::{DVec3, DataPolygon};
 ///    on thousands of polygons, invariance, limits, bad input — then runs for it too. Plant
 ///    an answer of your own besides: a curve the family reproduces.
 ///
-/// ```
-/// use std::ops::Range;
-/// use shapespline_criteria::Checker;
-/// use shapespline_geometry::{Boundary, DVec3, DataPolygon, Parametrization, PiecewiseCubic};
-/// use shapespline_search::{SearchOptions, Status, TensionFamily, search};
-///
-/// /// Bessel's tangents (those of the parabola through three points), shortened by tension.
-/// struct Bessel<'a> {
-///     polygon: &'a DataPolygon,
-///     tension: Vec<f64>,
-/// }
-///
-/// impl Bessel<'_> {
-///     fn tangent(&self, i: usize) -> DVec3 {
-///         let (p, n) = (self.polygon, self.polygon.segments());
-///         let velocity = |k: usize| p.chord(k) / p.spacing(k);
-///         let full = if i == 0 {
-///             velocity(0)
-///         } else if i == n {
-///             velocity(n - 1)
-///         } else {
-///             let (before, after) = (p.spacing(i - 1), p.spacing(i));
-///             (velocity(i - 1) * after + velocity(i) * before) / (before + after)
-///         };
-///         full / (1.0 + self.tension[i])
-///     }
-/// }
-///
-/// impl TensionFamily for Bessel<'_> {
-///     type Error = std::convert::Infallible;
-///
-///     fn tension(&self) -> &[f64] {
-///         &self.tension
-///     }
-///     fn set_tension(
-///         &mut self,
-///         changes: &[(usize, f64)],
-///         touched: &mut Vec<Range<usize>>,
-///     ) -> Result<(), Self::Error> {
-///         for &(node, tension) in changes {
-///             self.tension[node] = tension;
-///             touched.push(node.saturating_sub(1)..(node + 1).min(self.polygon.segments()));
-///         }
-///         Ok(())
-///     }
-///     fn solve_again(&mut self) -> Result<(), Self::Error> {
-///         Ok(())
-///     }
-///     fn end_legs(&self, i: usize) -> [DVec3; 2] {
-///         [self.tangent(i), self.tangent(i + 1)].map(|q| q * self.polygon.spacing(i) / 3.0)
-///     }
-/// }
-///
-/// let points = [[0.0, 0.0], [2.0, 0.1], [4.0, 0.2], [4.2, 0.6], [4.3, 2.0], [4.2, 4.0]];
-/// let polygon =
-///     DataPolygon::planar(&points, &Parametrization::Uniform, Boundary::ZeroCurvature)?;
-/// let options = SearchOptions::default();
-/// let checker = Checker::new(&polygon, options.criteria, options.tolerances);
-/// let mut family = Bessel { polygon: &polygon, tension: vec![0.0; 6] };
-/// let outcome = search(&mut family, &checker, &options, &mut |_| {
-///     std::ops::ControlFlow::Continue(())
-/// })?;
-/// assert_eq!(outcome.diagnostics.status, Status::Solved);
-/// assert!(outcome.diagnostics.nodes_changed > 0);
-/// let legs = (0..5).map(|i| family.end_legs(i)).collect();
-/// let curve = PiecewiseCubic::through(polygon, legs)?;
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
+/// The [first page of the crate](crate) has a family that runs.
 pub trait TensionFamily: Sync {
     /// Why a system could not be solved.
     type Error;

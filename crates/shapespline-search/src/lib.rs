@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Automatic tension: raise it where a shape criterion fails, then lower it.
+#![doc = include_str!("../README.md")]
+//!
+//! # How the search works
 //!
 //! One search serves every family of splines with a tension at each node. A family says how tension
 //! makes end legs ([`TensionFamily`]); the search asks the criteria where the curve fails, raises the
@@ -53,6 +55,12 @@ pub use options::{SearchOptions, Strategy};
 pub use outcome::{Diagnostics, Fit, Found, Outcome, Phase, Status, Step};
 pub use pattern::Pattern;
 pub use search::{search, search_and_report};
+/// The systems that families solve.
+pub use shapespline_banded as banded;
+/// Criteria, tolerances and the report.
+pub use shapespline_criteria as criteria;
+/// Points, their parameters and ends, and the evaluation of curves.
+pub use shapespline_geometry as geometry;
 pub use solved::SolvedFamily;
 pub use system::{TensionSystem, solve_legs, try_each_row};
 pub use tension::{Tension, check_stored, per_point};

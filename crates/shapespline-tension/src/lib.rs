@@ -30,7 +30,9 @@
 //! for Approximation IV (2001) ("paper 000"); natural ends are ours.
 //!
 //! ```
-//! use shapespline_geometry::{Boundary, Curve, DVec3, DataPolygon, Parametrization, Side};
+//! use shapespline_tension::geometry::{
+//!     Boundary, Curve, DVec3, DataPolygon, Parametrization, Side,
+//! };
 //! use shapespline_tension::{Interpolant, TensionSpline};
 //!
 //! let points = vec![
@@ -54,6 +56,10 @@
 mod spline;
 mod system;
 
+/// Criteria, tolerances and the report.
+pub use shapespline_search::criteria;
+/// Points, their parameters and ends, and the evaluation of curves.
+pub use shapespline_search::geometry;
 pub use shapespline_search::{
     Fit, FitError, Interpolant, SearchOptions, Status, Strategy, Tension,
 };

@@ -1,20 +1,21 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Splines that interpolate data **and keep its shape**.
+//! Splines that interpolate data **and keep its shape**: curves through points in the plane and in
+//! space, and functions of one variable.
 //!
 //! This crate re-exports the crates of the workspace under one name; each can be used alone.
 //!
 //! | module | what it holds |
 //! |---|---|
-//! | [`geometry`] | data polygon, parametrisations, Bézier segments, exact signs, piecewise curves |
-//! | [`banded`] | tridiagonal and cyclic solvers |
-//! | [`criteria`] | the shape criteria, decided exactly, and their report |
-//! | [`search`] | automatic tension: raise where a criterion fails, then lower |
-//! | [`monotone`] | functions of one variable: Bézier-like curves, C¹ monotone quartic, C² monotone quintic |
+//! | [`fair`] | fair curves: C² cubics with extra knots, the least energy that keeps the shape |
 //! | [`nu`] | ν-splines: G², one linear system |
 //! | [`tension`] | C² tension cubics: C² in a parameter of their own, one linear system |
 //! | [`catmull_rom`] | Catmull–Rom: C¹ or G¹, local, shape-preserving in closed form |
-//! | [`fair`] | fair curves: C² cubics with extra knots, the least energy that keeps the shape |
+//! | [`monotone`] | functions of one variable: C² monotone cubics of least bending energy, C² quintics, C¹ quartics, smoothing |
+//! | [`criteria`] | the shape criteria, decided exactly, and their report |
+//! | [`geometry`] | data polygon, parametrisations, Bézier segments, exact signs, piecewise curves |
+//! | [`search`] | automatic tension: raise where a criterion fails, then lower |
+//! | [`banded`] | tridiagonal, cyclic and block solvers |
 //!
 //! ```
 //! use shapespline::prelude::*;
@@ -39,17 +40,31 @@
 //! let fit = NuSpline::shape_preserving(polygon, &SearchOptions::default())?;
 //! assert!(fit.report.ok());
 //! println!("{}", fit.curve.curve().evaluate(1.0, 0, Side::Right));
-//! # Ok::<(), FitError>(())
+//!
+//! // The same promise for functions: rising data, a rising function.
+//! let (x, y) = ([0.0, 1.0, 2.0, 5.0], [0.0, 0.1, 3.0, 3.2]);
+//! let f = MonotoneCubic::new(&x, &y, &CubicOptions::default())?;
+//! assert!(f.derivative(1).evaluate(4.0, 0, None) >= 0.0);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+#[doc(inline)]
 pub use shapespline_banded as banded;
+#[doc(inline)]
 pub use shapespline_catmull_rom as catmull_rom;
+#[doc(inline)]
 pub use shapespline_criteria as criteria;
+#[doc(inline)]
 pub use shapespline_fair as fair;
+#[doc(inline)]
 pub use shapespline_geometry as geometry;
+#[doc(inline)]
 pub use shapespline_monotone as monotone;
+#[doc(inline)]
 pub use shapespline_nu as nu;
+#[doc(inline)]
 pub use shapespline_search as search;
+#[doc(inline)]
 pub use shapespline_tension as tension;
 
 /// What most users need.
@@ -62,7 +77,8 @@ pub mod prelude {
         Ragged, Repeated, Side,
     };
     pub use shapespline_monotone::{
-        MonotoneQuartic, MonotoneQuintic, QuarticOptions, QuinticOptions,
+        CubicOptions, MonotoneCubic, MonotoneQuartic, MonotoneQuintic, QuarticOptions,
+        QuinticOptions,
     };
     pub use shapespline_nu::NuSpline;
     pub use shapespline_search::{
