@@ -11,7 +11,7 @@ path, and the environment's own copy must be the one that is imported. The first
 sdist too, compiled by pip from the archive alone. Every crate is packaged by cargo and built from
 its archive.
 
-``--quick`` tries the import and one fit instead of the whole test suite.
+``--quick`` runs ``smoke.py`` instead of the whole test suite.
 """
 
 import argparse
@@ -27,13 +27,6 @@ ROOT = Path(__file__).resolve().parent.parent
 VERSIONS = ["3.10", "3.11", "3.12", "3.13"]
 # From a folder that is not the tree, and without the user's own packages and variables.
 CLEAN = {"PYTHONNOUSERSITE": "1", "PIP_DISABLE_PIP_VERSION_CHECK": "1"}
-FIT = """
-import pathlib, sys, shapespline as ss
-assert pathlib.Path(ss.__file__).is_relative_to(sys.prefix), ss.__file__
-points = [(0, 0, 0), (2, 0, 0.1), (4, 0.1, 0.1), (4.5, 0.4, 0.2), (4.6, 3, 0.2), (4.6, 6, 0.3)]
-assert ss.NuSpline.shape_preserving(points).check().ok
-print("imported from", ss.__file__)
-"""
 
 
 def run(*command: str | Path, cwd: Path, **variables: str) -> None:
@@ -81,7 +74,7 @@ def try_python(python: Path, package: Path, folder: Path, options: argparse.Name
     own = environment(python, folder / "venv")
     extra = "" if options.quick else "[test]"
     run(own, "-m", "pip", "install", "--quiet", f"{package}{extra}", cwd=folder)
-    run(own, "-c", FIT, cwd=folder)
+    run(own, ROOT / ".ci" / "smoke.py", "--installed", cwd=folder)
     if options.quick:
         return
     # The tests, and the pages that they read; the module's sources stay behind.

@@ -2,9 +2,13 @@
 
 """Print what `make` must install before it can build and test, one requirement a line.
 
+    python .ci/requirements.py [--oldest] EXTRA …
+
 pip can install a project's extras only together with the project, and building the extension is
 maturin's task, later and in release mode. So the lists are read from pyproject.toml, where they
 stand once: what the build needs, what the module needs, and the extras named as arguments.
+With ``--oldest``, what users install beside the module has the oldest version that is promised to
+do; the tools stay new.
 """
 
 import re
@@ -35,6 +39,17 @@ def requirements(pyproject: dict, extras: list[str]) -> list[str]:
     return list(dict.fromkeys(wanted))
 
 
+def oldest(pyproject: dict, lines: list[str]) -> list[str]:
+    """Return the lines with the lower bound of each dependency of users as its version."""
+    extras = pyproject["project"]["optional-dependencies"]
+    of_users = {*pyproject["project"]["dependencies"], *extras["scipy"], *extras["plot"]}
+    of_users.update(extras["pandas"])
+    return [f"{line.replace('>=', '==')}.*" if line in of_users else line for line in lines]
+
+
 if __name__ == "__main__":
     path = Path(__file__).resolve().parent.parent / "pyproject.toml"
-    print("\n".join(requirements(tomllib.loads(path.read_text(encoding="utf-8")), sys.argv[1:])))
+    project = tomllib.loads(path.read_text(encoding="utf-8"))
+    asked = sys.argv[1:]
+    lines = requirements(project, [name for name in asked if name != "--oldest"])
+    print("\n".join(oldest(project, lines) if "--oldest" in asked else lines))

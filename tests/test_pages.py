@@ -8,9 +8,12 @@ import shlex
 import shutil
 from pathlib import Path
 
+import numpy as np
 import pytest
+from scipy.interpolate import CubicSpline
 
 import polygons
+import shapespline as ss
 from shapespline import cli
 
 ROOT = Path(__file__).parent.parent
@@ -92,3 +95,17 @@ def test_the_gallery_shows_every_figure_that_is_drawn(tmp_path, monkeypatch):
     drawn = {path.name for path in gallery.draw_all(tmp_path)}
     page = (ROOT / "python" / "docs" / "gallery.md").read_text(encoding="utf-8")
     assert drawn == set(re.findall(r"images/gallery/(\S+\.png)", page))
+
+
+def test_the_picture_of_functions_shows_what_the_readme_says(tmp_path, monkeypatch):
+    monkeypatch.syspath_prepend(str(ROOT / "python" / "docs" / "scripts"))
+    import functions_picture
+
+    functions_picture.draw(tmp_path / "functions.png")
+    assert (tmp_path / "functions.png").stat().st_size > 20_000
+    x, y = polygons.load("rpn14").values()
+    u = np.linspace(x[0], x[-1], 100_001)
+    cubic = CubicSpline(x, y, bc_type="natural")
+    assert cubic(u).max() - y.max() == pytest.approx(0.1 * np.ptp(y), rel=0.05)  # "by a tenth"
+    assert np.mean(cubic(u, 1) < 0) == pytest.approx(2 / 5, rel=0.1)  # "two fifths"
+    assert ss.fit_monotone(x, y)(u, 1).min() >= 0

@@ -9,7 +9,6 @@
 // Doc comments on Python classes are numpydoc docstrings: `points[0]` in them is no link.
 #![allow(rustdoc::broken_intra_doc_links)]
 
-use mimalloc::MiMalloc;
 use pyo3::prelude::*;
 
 mod asked;
@@ -39,8 +38,9 @@ mod work;
 /// A fit of a million points takes and gives back a dozen arrays of tens of megabytes. The C library
 /// returns each to the system at once and has every page zeroed and mapped anew by the next fit, which
 /// took as long as the fit; this allocator keeps them for a moment.
+#[cfg(not(target_family = "wasm"))]
 #[global_allocator]
-static ALLOCATOR: MiMalloc = MiMalloc;
+static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
 
 /// Compiled part of shapespline: the curves, their reports, and checks of any curve.
 #[pymodule(gil_used = false)]
