@@ -10,6 +10,7 @@ import pytest
 from scipy.interpolate import make_smoothing_spline
 
 import shapespline as ss
+from scale import scaled
 
 RNG = np.random.default_rng
 
@@ -185,6 +186,61 @@ def test_the_result_pickles_with_its_record():
     assert ss.MonotoneCubic(x, y).smoothing is None
 
 
+def convex_cases(count):
+    """Noisy data, signs of their intervals of several kinds, and penalties."""
+    rng = np.random.default_rng(11)
+    for k in range(count):
+        n = int(rng.integers(3, 150))
+        x = np.sort(rng.uniform(0, 1, n)) if k % 3 else np.linspace(0, 1, n)
+        truth = [np.exp(2 * x), np.sqrt(x), x**3 + x, 1 / (1 + np.exp(-12 * (x - 0.5)))][k % 4]
+        y = truth + rng.choice([1e-3, 0.03, 0.3]) * rng.normal(size=n)
+        middle = x[1:] < 0.5
+        signs = [
+            np.ones(n - 1),
+            -np.ones(n - 1),
+            np.where(middle, 1, -1),
+            np.where(middle, -1, 1),
+            rng.integers(-1, 2, n - 1),
+        ][k % 5]
+        yield x, y, signs, 10.0 ** rng.uniform(-6, 1)
+
+
+def test_convex_functions_pass_their_check_and_move_the_values_least():
+    for x, y, signs, penalty in convex_cases(scaled(2000)):
+        f = ss.smooth_monotone(x, y, penalty=penalty, convex=signs)
+        assert f.smoothing.converged
+        report = ss.check_monotone(f.x, f.y, f, convex=signs)
+        assert report.ok, report
+        # Constraints cost, and nothing between the two costs less.
+        plain = ss.smooth_monotone(x, y, penalty=penalty)
+        cost = [np.sum((y - g.y) ** 2) + penalty * g.bending_energy for g in (plain, f)]
+        assert cost[0] <= cost[1] * (1 + 1e-9)
+
+
+def test_one_sign_is_for_the_whole_curve():
+    x, y, _, penalty = next(convex_cases(1))
+    for sign in (1, -1, 0):
+        f = ss.smooth_monotone(x, y, penalty=penalty, convex=sign)
+        g = ss.smooth_monotone(x, y, penalty=penalty, convex=np.full(len(x) - 1, sign))
+        np.testing.assert_array_equal(f.y, g.y)
+    assert (np.diff(f.y) >= 0).all()
+    plain = ss.smooth_monotone(x, y, penalty=penalty)
+    np.testing.assert_array_equal(plain.y, f.y)
+
+
+def test_convex_smoothing_recovers_a_convex_function():
+    rng = np.random.default_rng(4)
+    x = np.sort(rng.uniform(0, 1, 300))
+    truth = np.exp(3 * x)
+    errors = []
+    for _ in range(20):
+        y = truth + rng.normal(size=300)
+        fits = [ss.smooth_monotone(x, y, penalty=1e-4, convex=convex) for convex in (None, 1)]
+        errors.append([np.sqrt(np.mean((f.y - truth) ** 2)) for f in fits])
+    plain, convex = np.mean(errors, axis=0)
+    assert convex < 0.8 * plain
+
+
 X, Y = [0.0, 1.0, 2.0], [0.0, 1.0, 1.5]
 
 
@@ -199,6 +255,18 @@ X, Y = [0.0, 1.0, 2.0], [0.0, 1.0, 1.5]
         (X, Y, {"penalty": "aic"}, "penalty must be one of 'gcv', a number", "penalty", (), "aic"),
         (X, Y, {"bounds": (1, 1)}, "bounds[1] must exceed the lower", "bounds", (1,), 1.0),
         (X, Y, {"bounds": (1, 0)}, "bounds[1] must exceed the lower", "bounds", (1,), 0.0),
+        (X, Y, {"convex": [1, 2]}, "convex[1] must be -1, 0 or 1", "convex", (1,), 2.0),
+        (X, Y, {"convex": [1]}, "convex must be one sign or one per interval", "convex", (), (1,)),
+        (X, Y, {"convex": "data"}, "convex must be one of None, 1, -1", "convex", (), "data"),
+        (
+            X,
+            Y,
+            {"convex": 1, "penalty": 0},
+            "penalty must be positive with convex",
+            "penalty",
+            (),
+            0,
+        ),
         ([0, 2, 1], Y, {}, "x[2] must not be below its predecessor", "x", (2,), 1.0),
         ([2, 2, 2], Y, {}, "x must have at least two distinct values", "x", (), 1),
         (X, [0, np.nan, 1], {}, "y[1] is NaN", "y", (1,), None),

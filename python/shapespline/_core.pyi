@@ -799,6 +799,7 @@ def smooth_monotone(
     residual: float | None = None,
     penalty: Literal["gcv"] | float = "gcv",
     increasing: bool | None = True,
+    convex: ArrayLike | None = None,
     bounds: tuple[float | None, float | None] | None = None,
 ) -> MonotoneCubic: ...
 def minimal_bending(x: ArrayLike, y: ArrayLike) -> float | _Floats: ...

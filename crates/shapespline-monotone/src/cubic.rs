@@ -29,7 +29,7 @@ use convex::Asked;
 pub use convex::Convexity;
 pub use ends::Ends;
 pub(crate) use pieces::Pieces;
-use problem::{Layers, Problem};
+use problem::{Bend, Layers, Problem, Slopes};
 use profile::Profiles;
 
 /// How a [`MonotoneCubic`] is made.
@@ -131,35 +131,39 @@ impl MonotoneCubic {
         ask(go_on)?;
         data.check_curvature(y)?;
         let (mut problem, first) = problem(&data, options)?;
-        let asked = |convex| Asked::new(convex, &mut problem, data.len(), options, first);
-        let asked = options.convex.as_ref().map(asked).transpose()?;
+        let form = match &options.convex {
+            Some(convex) => {
+                Form::Asked(Asked::new(convex, &mut problem, data.len(), options, first)?)
+            }
+            None => Form::Monotone,
+        };
         let extrapolate = extrapolation(options, x, y);
-        let task = Task { problem, first, asked, units: data.units(), layer: options.layer };
+        let task = Task { problem, first, form, units: data.units(), layer: options.layer };
         task.solved([x, y], extrapolate, go_on)
     }
 
-    /// The least-energy function through increasing (`sign` 1) or decreasing (−1) `y` whose rises are known to more
-    /// digits than their differences have: their sizes, in the units of y given. Natural ends, no layers.
+    /// The least-energy function through values whose rises are known to more digits than their differences have.
+    /// Natural ends, no layers.
     pub(crate) fn through(
-        [x, y]: [&[f64]; 2],
-        rises: &[f64],
-        unit: i32,
-        sign: f64,
+        known: &Known<'_>,
         extrapolate: Extrapolation,
         go_on: GoOn<'_>,
     ) -> Result<Self, MonotoneError> {
+        let [x, y] = known.data;
         let data = Data::new(x, y)?;
         data.check_curvature(y)?;
         let mut problem = Problem::new(&data);
-        let scale = PowerOfTwo::new(unit - data.ey);
-        for (i, rise) in rises.iter().enumerate() {
+        let scale = PowerOfTwo::new(known.ey - data.ey);
+        for (i, rise) in known.rises.iter().enumerate() {
             problem.d[i] = scale.scale(*rise);
-            problem.sign[i] = if *rise > 0.0 { sign } else { 0.0 };
+            problem.sign[i] = if *rise > 0.0 { known.sign } else { 0.0 };
         }
         for i in 0..x.len() {
             problem.held[i] = problem.is_level(i);
         }
-        let task = Task { problem, first: 0, asked: None, units: data.units(), layer: 0.0 };
+        let scale = PowerOfTwo::new((known.ey - known.ex) - (data.ey - data.ex));
+        let form = if known.bend.is_empty() { Form::Monotone } else { known.bent(&problem, scale) };
+        let task = Task { problem, first: 0, form, units: data.units(), layer: 0.0 };
         task.solved([x, y], extrapolate, go_on)
     }
 
@@ -251,9 +255,49 @@ struct Task {
     problem: Problem,
     /// The problem's interval of the data's first.
     first: usize,
-    asked: Option<Asked>,
+    form: Form,
     units: Units,
     layer: f64,
+}
+
+/// What is asked of a fit.
+enum Form {
+    /// The least energy of monotone functions.
+    Monotone,
+    /// Convexity.
+    Asked(Asked),
+    /// Signs of intervals, in the direction of the data, and slopes that have them.
+    Bent(Vec<Bend>, Slopes),
+}
+
+/// A function of which more is known than its values.
+pub(crate) struct Known<'a> {
+    /// x, and increasing or decreasing y.
+    pub(crate) data: [&'a [f64]; 2],
+    /// 1 if y increases, −1 if it decreases.
+    pub(crate) sign: f64,
+    /// Sizes of the rises, in units of 2^ey.
+    pub(crate) rises: &'a [f64],
+    /// Exponents of the units of x and y.
+    pub(crate) ex: i32,
+    pub(crate) ey: i32,
+    /// 1 for intervals on which it is convex in the direction of the data, −1 for concave, 0 for others; empty: 0.
+    pub(crate) bend: &'a [Bend],
+    /// With signs, sizes of the slopes, and what those at the ends of the intervals that have one are above the secants.
+    pub(crate) slopes: &'a [f64],
+    pub(crate) over: &'a [[f64; 2]],
+}
+
+impl Known<'_> {
+    fn bent(&self, problem: &Problem, scale: PowerOfTwo) -> Form {
+        let m: Vec<f64> = self.slopes.iter().map(|m| scale.scale(*m)).collect();
+        let over = |i: usize| match self.bend[i] {
+            0 => [m[i], m[i + 1]].map(|m| m - problem.secant(i)),
+            _ => self.over[i].map(|over| scale.scale(over)),
+        };
+        let over = (0..self.bend.len()).map(over).collect();
+        Form::Bent(self.bend.to_vec(), Slopes { m, fine: vec![], over, solves: 0, converged: true })
+    }
 }
 
 impl Task {
@@ -268,10 +312,20 @@ impl Task {
         let found = problem.solve(None, go_on)?;
         let (least, mut gaps) = problem.certificate(&found.m, first..first + x.len() - 1);
         let gap: f64 = gaps.iter().sum();
-        let Made { pieces, energy, solves, converged } = match &self.asked.take() {
-            Some(asked) => self.bent(asked, [x, y], go_on)?,
-            None => self.monotone([x, y], found.m, go_on)?,
-        };
+        let Made { pieces, energy, solves, converged } =
+            match std::mem::replace(&mut self.form, Form::Monotone) {
+                Form::Monotone => self.monotone([x, y], found.m, go_on)?,
+                Form::Asked(asked) => {
+                    let straight = asked.impose(&mut self.problem);
+                    let found = self.problem.solve(None, go_on)?;
+                    self.bent([x, y], &found, &asked.signs, straight)
+                }
+                Form::Bent(bend, slopes) => {
+                    self.problem.bend = bend;
+                    let straight = slopes.over.iter().map(|over| *over == [0.0; 2]).collect();
+                    self.bent([x, y], &slopes, &vec![0; x.len()], straight)
+                }
+            };
         ask(go_on)?;
         let out = |energy: f64| units.energy_out(Fairness::Bending, energy);
         let diagnostics = Diagnostics {
@@ -309,18 +363,11 @@ impl Task {
     }
 
     /// Pieces that are convex and concave where that is asked.
-    fn bent(
-        &mut self,
-        asked: &Asked,
-        data: [&[f64]; 2],
-        go_on: GoOn<'_>,
-    ) -> Result<Made, MonotoneError> {
-        let straight = asked.impose(&mut self.problem);
+    fn bent(&self, data: [&[f64]; 2], found: &Slopes, signs: &[i8], straight: Vec<bool>) -> Made {
         let Self { problem, first, units, layer, .. } = self;
-        let found = problem.solve(None, go_on)?;
-        let profiles = Profiles::new(problem, &found, &asked.signs, straight, *layer);
-        let (pieces, energy) = Pieces::bent(problem, *units, data, &found, &profiles, *first);
-        Ok(Made { pieces, energy, solves: found.solves, converged: found.converged })
+        let profiles = Profiles::new(problem, found, signs, straight, *layer);
+        let (pieces, energy) = Pieces::bent(problem, *units, data, found, &profiles, *first);
+        Made { pieces, energy, solves: found.solves, converged: found.converged }
     }
 }
 

@@ -109,8 +109,10 @@ pub enum MonotoneError {
         rule: &'static str,
     },
     /// A residual that no monotone function between the bounds has.
-    #[error("residual must be at least {least}, that of the isotonic regression, got {value}")]
+    #[error("residual must be at least {least}, that of {of}, got {value}")]
     Residual {
+        /// What has the least residual.
+        of: &'static str,
         /// The residual given.
         value: f64,
         /// The least there is.

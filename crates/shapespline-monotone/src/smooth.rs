@@ -9,19 +9,24 @@
 //!
 //! 1. Without constraints it is quadratic, the smoothing spline; where that is monotone it is the answer.
 //! 2. Else a primal–dual interior point comes near to the answer (`interior.rs`), and
-//! 3. Newton's method on what is free ends there (`finish.rs`). Both solve their systems by orthogonal elimination from
+//! 3. Newton's method on what is free (`active.rs`) ends there (`finish.rs`). Both solve their systems by orthogonal elimination from
 //!    node to node (`system.rs`). O(N) per step.
+//!
+//! Functions that are convex or concave as well where that is asked have a third form of energy there, with unknowns of its
+//! own (`bent.rs`); all else is the same.
 //!
 //! As λ falls to 0 the values become those of the isotonic regression (`pool.rs`): the data, where they are monotone.
 
 use crate::MonotoneError;
-use crate::cubic::MonotoneCubic;
+use crate::cubic::{Known, MonotoneCubic};
 use crate::extrapolation::Extrapolation;
 use crate::interrupt::ask;
 use input::Input;
 use penalty::{LINE, Optima};
 use std::ops::ControlFlow;
 
+mod active;
+mod bent;
 mod finish;
 mod input;
 mod interior;
@@ -55,6 +60,8 @@ pub struct SmoothOptions {
     pub penalty: PenaltyChoice,
     /// Whether the function increases; `None`: whether the weighted regression line does.
     pub increasing: Option<bool>,
+    /// Where the function is to be convex (1) or concave (−1) as well, one sign per interval between the x; 0: not asked.
+    pub convex: Option<Vec<i8>>,
     /// Bounds of the function, which the data may leave; infinite ones bound nothing.
     pub bounds: Option<[f64; 2]>,
     /// What the function is outside the data.
@@ -67,6 +74,7 @@ impl Default for SmoothOptions {
             weights: None,
             penalty: PenaltyChoice::default(),
             increasing: Some(true),
+            convex: None,
             bounds: None,
             extrapolate: Extrapolation::default(),
         }
@@ -94,13 +102,16 @@ pub struct Smoothing {
 /// The monotone function of least `Σ w(y − f(x))² + λ ∫f''² dx`, through its values at the data: its
 /// [`MonotoneCubic::smoothing`] says how it was found. O(N) per step of some 20.
 ///
+/// With [`SmoothOptions::convex`] it is the best of the monotone functions that are convex and concave as asked.
+///
 /// `x` must not decrease. Data at equal abscissae, or at ones nearer than 2⁻³⁰ of their range, are merged: their weights
 /// are added and their weighted means taken. Where monotonicity is no constraint the function is the smoothing spline.
 ///
 /// # Errors
 /// [`MonotoneError`] naming argument, index and value: lengths that differ, NaN or infinity, x decreasing or all the
 /// same, weights that are not positive, a negative penalty or residual, a residual below that of the isotonic
-/// regression, bounds without room between them, quantities that overflow.
+/// regression (or of the nearest function of the convexity asked), bounds without room between them, signs other than −1,
+/// 0 and 1, the penalty 0 with signs (the function would have kinks), quantities that overflow.
 ///
 /// ```
 /// use shapespline_monotone::{PenaltyChoice, SmoothOptions, smooth_monotone};
@@ -148,9 +159,17 @@ pub fn smooth_monotone_with(
         f[rises - level..].fill(input.task.bounds[1]);
     }
     let values = input.values_out(&f);
-    let (rises, data) = (&optimum.sizes[..rises], [&input.x[..], &values[..]]);
-    let (unit, sign) = (input.ey, input.sign);
-    let mut function = MonotoneCubic::through(data, rises, unit, sign, options.extrapolate, go_on)?;
+    let known = Known {
+        data: [&input.x, &values],
+        sign: input.sign,
+        rises: &optimum.sizes[..rises],
+        ex: input.ex,
+        ey: input.ey,
+        bend: &input.task.bend,
+        slopes: &optimum.sizes[input.task.layout().m(0)..input.task.layout().low()],
+        over: &input.task.over_secants(&optimum.sizes),
+    };
+    let mut function = MonotoneCubic::through(&known, options.extrapolate, go_on)?;
     let penalty = match options.penalty {
         PenaltyChoice::Fixed(penalty) => penalty,
         _ if lambda >= LINE => f64::INFINITY,
@@ -160,7 +179,7 @@ pub fn smooth_monotone_with(
         penalty,
         residual: input.residual_out(optimum.residual + input.within),
         degrees_of_freedom,
-        increasing: sign > 0.0,
+        increasing: input.sign > 0.0,
         steps: optimum.steps,
         converged: optimum.converged && function.diagnostics().converged,
     });

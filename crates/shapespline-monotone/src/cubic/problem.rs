@@ -45,9 +45,19 @@ pub(crate) struct Slopes {
     pub(crate) m: Vec<f64>,
     /// Where convexity is asked, every slope as a sum of which the first part is a secant that bounds it, if one does.
     pub(crate) fine: Vec<[f64; 2]>,
+    /// Where that is known better than from `fine`, what the slopes at the ends of every interval are above its secant.
+    pub(crate) over: Vec<[f64; 2]>,
     /// Linear solves of the stretch that took most.
     pub(crate) solves: usize,
     pub(crate) converged: bool,
+}
+
+impl Slopes {
+    /// What the slopes at the ends of interval i are above its secant.
+    pub(crate) fn over_secant(&self, i: usize, delta: f64) -> [f64; 2] {
+        let over = |k: usize| (self.fine[k][0] - delta) + self.fine[k][1];
+        self.over.get(i).copied().unwrap_or_else(|| [over(i), over(i + 1)])
+    }
 }
 
 /// Second derivatives at nodes of slope 0, and the share of the intervals beside them that a layer takes.
@@ -124,11 +134,12 @@ impl Problem {
         };
         if count == 1 {
             let ((m, fine), steps) = part(&mut Room::default(), 0)?;
-            return Ok(Slopes { m, fine, solves: steps.solves, converged: steps.converged });
+            let Steps { solves, converged } = steps;
+            return Ok(Slopes { m, fine, over: Vec::new(), solves, converged });
         }
         let parts: Vec<_> = (0..count).into_par_iter().map_init(Room::default, part).collect();
         let (m, fine) = (Vec::with_capacity(nodes), Vec::new());
-        let mut all = Slopes { m, fine, solves: 0, converged: true };
+        let mut all = Slopes { m, fine, over: Vec::new(), solves: 0, converged: true };
         for part in parts {
             let ((m, fine), steps) = part?;
             all.m.extend_from_slice(&m);

@@ -88,14 +88,11 @@ impl Profile {
             return Self::default();
         }
         if problem.bend[i] != 0 {
-            return Self::bent(problem.bend[i], [found.fine[i], found.fine[i + 1]], d, h);
+            return Self::bent(problem.bend[i], found.over_secant(i, d / h), m, d, h);
         }
         let mut piece = problem.piece(i, &found.m);
         if !piece.level {
-            piece = Piece::cubic(
-                [0, 1].map(|k| (found.fine[i + k][0] - d / h) + found.fine[i + k][1]),
-                h,
-            );
+            piece = Piece::cubic(found.over_secant(i, d / h), h);
         }
         let mut profile = Self { energy: piece.energy, ends: piece.ends(), ..Self::default() };
         profile.reach = [h, h];
@@ -121,9 +118,8 @@ impl Profile {
     }
 
     /// Of least energy for a convex or concave interval.
-    fn bent(bend: i8, fine: [[f64; 2]; 2], d: f64, h: f64) -> Self {
-        let shape = Ramp::beside(bend, fine.map(|[base, m]| (base - d / h) + m), h).shape();
-        let m = fine.map(|[base, m]| base + m);
+    fn bent(bend: i8, over: [f64; 2], m: [f64; 2], d: f64, h: f64) -> Self {
+        let shape = Ramp::beside(bend, over, h).shape();
         let (ends, energy) = (shape.ends, shape.energy);
         let ulps = ULPS * f64::EPSILON * (m[0] + m[1]);
         let (reach, rounding) = ([h; 2], [ulps / h; 2]);
@@ -132,6 +128,8 @@ impl Profile {
             // Straight with the slope of the other end, then a parabola of slope.
             let (own, slope) = (m[end], m[1 - end]);
             let rise = width * (slope + (own - slope) / 3.0) / d;
+            // A level part has no rise.
+            let rise = if slope == 0.0 { 1.0 } else { rise };
             profile.push(Knot { width, rise, from_right: end == 1, slope, second: 0.0 });
             profile.reach[end] = width;
             profile.level = slope == 0.0;

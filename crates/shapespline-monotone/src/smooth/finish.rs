@@ -7,6 +7,8 @@
 //! parts (terms in slope^{3/2}): those step in their root, as the interpolant's do. The end is checked: held rises must
 //! have multipliers that are not negative, free ones must stay positive.
 
+use super::active::active;
+use super::bent::arms;
 use super::interior::{State, Task};
 use super::interval::Model;
 use super::system::{HELD, Layout, System};
@@ -19,19 +21,20 @@ const LEAST_PART: f64 = 1e-5;
 /// Steps of every rise and slope, relative to the secants beside them, at which the method ends; and that it must reach.
 const ENOUGH: f64 = 1e-11;
 const NEEDED: f64 = 1e-7;
-/// What multipliers of held rises may be below 0, relative to the largest.
-const TOLERANCE: f64 = 1e-7;
 /// What the objective may rise by rounding, relative to it.
 const ALLOWANCE: f64 = 1e-13;
+/// The same of all that is taken to be 0 where convexity is asked: straight and level parts are to be so exactly.
+const BENT_ALLOWANCE: f64 = 1e-11;
 const TINY_ROOT: f64 = 1e-160;
+/// The part of the way to 0 that a step takes arms.
+const FRACTION: f64 = 15.0 / 16.0;
 /// Changes of what is held, and the part of its first size below which a free rise has fallen to 0.
 const ROUNDS: usize = 6;
 /// Solves after which what is held no longer changes: the interior point has come near enough as it is.
 const SOLVES: usize = 20;
-/// Ratios of rises to multipliers beyond which it is clear what is 0; the least share of a multiplier in the push.
-const CLEAR: f64 = 30.0;
-const LEAST_SHARE: f64 = 0.01;
 const COLLAPSED: f64 = 1e-4;
+/// The part of the slopes beside an interval that its arms are measured by at least.
+const LEAST_BEND: f64 = 1e-3;
 
 /// The optimum for one penalty.
 #[derive(Debug, Clone)]
@@ -48,16 +51,16 @@ pub(super) struct Optimum {
 }
 
 /// Newton's method at a point, with room for its arrays.
-struct Newton<'a> {
-    task: &'a Task,
-    lambda: f64,
-    layout: Layout,
-    held: Vec<bool>,
-    /// Products that rises keep with their multipliers; 0 where they are held or free.
-    centred: Vec<f64>,
-    models: Vec<Model>,
-    f: Vec<f64>,
-    pull: Vec<f64>,
+pub(super) struct Newton<'a> {
+    pub(super) task: &'a Task,
+    pub(super) lambda: f64,
+    pub(super) layout: Layout,
+    pub(super) held: Vec<bool>,
+    /// Products that sizes keep with their multipliers; 0 where they are held or free.
+    pub(super) centred: Vec<f64>,
+    pub(super) models: Vec<Model>,
+    pub(super) f: Vec<f64>,
+    pub(super) pull: Vec<f64>,
 }
 
 /// The optimum near an interior point's answer, or what is nearer to it than that; `None` where nothing is.
@@ -72,33 +75,41 @@ pub(super) fn finish(
     let mut newton = Newton::new(task, lambda);
     newton.evaluate(near.first, &near.sizes);
     let before = (newton.models.clone(), newton.f.clone());
-    (newton.held, newton.centred) = active(task, near);
+    (newton.held, newton.centred) = active(task, lambda, near);
     let (mut first, mut sizes) = (near.first, near.sizes.clone());
     let mut steps = near.steps;
     for round in 1..=ROUNDS {
+        if layout.bent {
+            (first, sizes) = (near.first, near.sizes.clone());
+            task.settle(&mut newton.held, &mut sizes);
+        }
         if newton.held[layout.low()] {
             first = task.bounds[0];
         }
         for k in 0..layout.low() {
             if newton.held[k] {
                 sizes[k] = 0.0;
-            } else if sizes[k] == 0.0 {
+            } else if sizes[k] == 0.0 && !task.is_beside_bent(k) {
                 sizes[k] = near.sizes[k];
             }
         }
         let (solves, ended) = newton.run(&mut first, &mut sizes, system, go_on)?;
         steps += solves;
         let (rise, size) = newton.rise(&before.0, &before.1);
-        let better = rise <= ALLOWANCE * size && newton.is_between();
+        let allowance = if layout.bent { BENT_ALLOWANCE } else { ALLOWANCE };
+        let better = rise <= allowance * size && newton.is_between();
         // The sizes that `wrong` proposes are for another round.
-        let answer = sizes.clone();
+        let mut answer = sizes.clone();
+        if layout.bent {
+            task.settle(&mut newton.held, &mut answer);
+        }
         let wrong = if ended { newton.wrong(&mut sizes) } else { Vec::new() };
         let last = round == ROUNDS || steps - near.steps >= SOLVES;
         if !wrong.is_empty() && !last {
             for k in wrong {
                 newton.held[k] = !newton.held[k];
             }
-            hold_slopes(&mut newton.held, layout);
+            newton.held = task.with_slopes(std::mem::take(&mut newton.held));
         } else if !better {
             return Ok(None);
         } else {
@@ -117,59 +128,18 @@ pub(super) fn finish(
     Ok(None)
 }
 
-/// Sizes that are 0 at the optimum: rises, the slopes at their ends, distances from bounds; and the products of rises
-/// and multipliers of which neither is small, for which both may be 0.
-///
-/// On the way to 0 a rise is smaller than its multiplier, which makes up a good part of what the data push it with; where
-/// a tiny rise remains, the energy of its level part pushes back instead.
-pub(super) fn active(task: &Task, near: &State) -> (Vec<bool>, Vec<f64>) {
-    let layout = task.layout();
-    // Rises are as large as the intervals are wide.
-    let unit = 1.0 / layout.n as f64;
-    let ratio = |i: usize| near.sizes[i] * unit / (task.h[i] * near.multipliers[i]);
-    let (mut f, mut pull) = (Vec::new(), Vec::new());
-    task.values(near.first, &near.sizes, &mut f);
-    task.pull(&f, &mut pull);
-    let (mut held, mut centred) = (vec![false; layout.len()], vec![0.0; layout.n]);
-    let mut push = near.multipliers[layout.low()];
-    for i in 0..layout.n {
-        push -= pull[i];
-        let pushed = near.multipliers[i] > LEAST_SHARE * push;
-        held[i] = pushed && ratio(i) < 1.0 / CLEAR;
-        if pushed && !held[i] && ratio(i) < CLEAR {
-            centred[i] = near.sizes[i] * near.multipliers[i];
-        }
-    }
-    for k in [layout.low(), layout.high()] {
-        held[k] = near.sizes[k] < near.multipliers[k];
-    }
-    hold_slopes(&mut held, layout);
-    (held, centred)
-}
-
-/// Slopes are held at the ends of rises that are.
-fn hold_slopes(held: &mut [bool], layout: Layout) {
-    held[layout.m(0)] = held[0];
-    for i in 0..layout.n {
-        held[layout.m(i + 1)] = held[i] || (i + 1 < layout.n && held[i + 1]);
-    }
-}
-
 impl<'a> Newton<'a> {
     fn new(task: &'a Task, lambda: f64) -> Self {
         let layout = task.layout();
-        let (held, centred) = (vec![false; layout.len()], vec![0.0; layout.n]);
+        let (held, centred) = (vec![false; layout.len()], vec![0.0; layout.len()]);
         Self { task, lambda, layout, held, centred, models: vec![], f: vec![], pull: vec![] }
     }
 
     fn evaluate(&mut self, first: f64, sizes: &[f64]) {
-        let (layout, lambda) = (self.layout, self.lambda);
+        let (task, lambda) = (self.task, self.lambda);
         self.models.clear();
-        for (i, h) in self.task.h.iter().enumerate() {
-            let m = [sizes[layout.m(i)], sizes[layout.m(i + 1)]];
-            let held = self.held[i];
-            self.models.push(if held { Model::HELD } else { Model::new(lambda, m, sizes[i], *h) });
-        }
+        let model = |i| if self.held[i] { Model::HELD } else { task.model(lambda, i, sizes) };
+        self.models.extend((0..self.layout.n).map(model));
         self.task.values(first, sizes, &mut self.f);
         self.task.pull(&self.f, &mut self.pull);
     }
@@ -232,7 +202,7 @@ impl<'a> Newton<'a> {
     fn advance(&mut self, first: &mut f64, sizes: &mut Vec<f64>, step: &[f64]) -> Option<f64> {
         let (models, f) = (self.models.clone(), self.f.clone());
         let mut trial = sizes.clone();
-        let mut t = 1.0;
+        let mut t = self.reach(sizes, step);
         while t > LEAST_PART {
             self.moved(sizes, step, t, &mut trial, &models);
             let start = *first + t * step[self.layout.low()];
@@ -249,16 +219,45 @@ impl<'a> Newton<'a> {
         None
     }
 
+    /// The part of a step that leaves something of all arms, and of the slopes beside them.
+    fn reach(&self, sizes: &[f64], step: &[f64]) -> f64 {
+        let from = self.layout.m(0);
+        let over = |k: &usize| {
+            let kept = self.task.is_beside_bent(*k) && !self.task.is_free(*k, sizes[*k]);
+            kept && !self.held[*k]
+        };
+        let mut least = 1.0f64;
+        for k in (from..self.layout.len()).filter(over) {
+            if step[k] < 0.0 {
+                least = least.min(-FRACTION * sizes[k] / step[k]);
+            }
+        }
+        least
+    }
+
     /// Hold the free rises that have fallen to nothing from where they started; whether there were any.
     fn hold_collapsed(&mut self, sizes: &mut [f64], start: &[f64]) -> bool {
         let layout = self.layout;
         let mut any = false;
         for i in 0..layout.n {
-            if !self.held[i] && self.centred[i] == 0.0 && sizes[i] < COLLAPSED * start[i] {
+            let plain = self.task.sense(i) == 0.0 && !self.held[i] && self.centred[i] == 0.0;
+            if plain && sizes[i] < COLLAPSED * start[i] {
                 for k in [i, layout.m(i), layout.m(i + 1)] {
                     (self.held[k], sizes[k], any) = (true, 0.0, true);
                 }
             }
+            let arms =
+                if self.task.sense(i) == 0.0 { [i, i] } else { [0, 1].map(|k| layout.arm(i, k)) };
+            let fallen = |k: usize| {
+                !self.held[k] && self.centred[k] == 0.0 && sizes[k] < COLLAPSED * start[k]
+            };
+            if arms[0] != arms[1] && arms.into_iter().all(fallen) {
+                any = true;
+                arms.into_iter().for_each(|k| self.held[k] = true);
+            }
+        }
+        if any && layout.bent {
+            self.task.settle(&mut self.held, sizes);
         }
         any
     }
@@ -275,9 +274,16 @@ impl<'a> Newton<'a> {
         for k in 0..layout.n {
             out[k] = if self.held[k] { 0.0 } else { (sizes[k] + t * step[k]).max(sizes[k] / 16.0) };
         }
+        for k in 0..if layout.bent { layout.len() } else { 0 } {
+            if self.task.is_beside_bent(k) {
+                // What arms and other slopes keep positive may be 0, and rounding less.
+                let moved = (sizes[k] + t * step[k]).max(0.0);
+                out[k] = if self.held[k] { sizes[k] } else { moved };
+            }
+        }
         for i in 0..=layout.n {
             let k = layout.m(i);
-            if self.held[k] {
+            if self.held[k] || self.task.is_beside_bent(k) {
                 continue;
             }
             let (mut own, mut all) = (0.0, 0.0);
@@ -318,80 +324,21 @@ impl<'a> Newton<'a> {
     fn largest(&self, sizes: &[f64], moved: &[f64]) -> f64 {
         let (layout, h) = (self.layout, &self.task.h);
         let mut largest = 0.0f64;
-        for i in (0..layout.n).filter(|i| !self.held[*i]) {
+        for i in (0..layout.n).filter(|i| !self.held[*i] && self.task.sense(*i) == 0.0) {
             largest = largest.max((moved[i] - sizes[i]).abs() / moved[i]);
             for k in [layout.m(i), layout.m(i + 1)] {
                 let change = (moved[k] - sizes[k]).abs();
                 largest = largest.max(change * h[i] / (moved[i] + moved[k] * h[i]));
             }
         }
+        for i in (0..layout.n).filter(|i| self.task.sense(*i) != 0.0) {
+            // Second derivatives, relative to the larger of the interval's own and of a share of the slopes over all.
+            let unit = moved[i] + h[i] * (moved[layout.m(i)] + moved[layout.m(i + 1)]);
+            let [a, b] = arms(layout, moved, i);
+            for k in [layout.arm(i, 0), layout.arm(i, 1)].into_iter().filter(|k| !self.held[*k]) {
+                largest = largest.max((moved[k] - sizes[k]).abs() / (a + b + LEAST_BEND * unit));
+            }
+        }
         if largest.is_nan() { f64::INFINITY } else { largest }
-    }
-
-    /// The slope at the end of a flat and the rise of the flat's last interval that balance a gradient in the slope and
-    /// the rise's multiplier ζ: a level part has `E = (4/9)m³/d`, least with its rise for `d = (2/3)m^{3/2}√(λ/ζ)`, when
-    /// it pulls the slope with `(4/3)√(λζm)`. Nothing without a multiplier.
-    fn opened(&self, gradient: f64, curvature: f64, multiplier: f64) -> (f64, f64) {
-        if !(multiplier > 0.0) {
-            return (0.0, 0.0);
-        }
-        let pull = 4.0 / 3.0 * (self.lambda * multiplier).sqrt();
-        let root = -2.0 * gradient / (pull + (pull * pull - 4.0 * curvature * gradient).sqrt());
-        (root * root, 2.0 / 3.0 * root.powi(3) * (self.lambda / multiplier).sqrt())
-    }
-
-    /// What is held and should not be, or free and should be held: by the signs of multipliers and by the bounds.
-    fn wrong(&self, sizes: &mut [f64]) -> Vec<usize> {
-        let (layout, n) = (self.layout, self.layout.n);
-        let total: f64 = self.pull.iter().sum();
-        let [low, high] = [self.held[layout.low()], self.held[layout.high()]];
-        let gradient = |i: usize| self.models[i].plain_gradient(self.task.h[i]);
-        let mut sum = 0.0;
-        let mut summed = |pull: &f64| {
-            sum += pull;
-            sum
-        };
-        let before: Vec<f64> = self.pull[..n].iter().map(&mut summed).collect();
-        // The multipliers of the bounds, by the stationarity of the first value and of a free rise.
-        let bottom = match (low, high) {
-            (false, _) => 0.0,
-            (true, false) => total,
-            (true, true) => {
-                let free = (0..n).find(|i| !self.held[*i]);
-                free.map_or(0.0, |i| before[i] - gradient(i)[0])
-            }
-        };
-        let top = bottom - total;
-        let size = before.iter().fold(bottom.abs(), |size, v| size.max(v.abs()));
-        let least = -TOLERANCE * size;
-        let ([lowest, highest], [first, last]) = (self.task.bounds, [self.f[0], self.f[n]]);
-        let mut wrong: Vec<usize> =
-            (0..n).filter(|i| self.held[*i] && bottom - before[*i] < least).collect();
-        if if low { bottom < least } else { first < lowest } {
-            wrong.push(layout.low());
-        }
-        if if high { top < least } else { last > highest } {
-            wrong.push(layout.high());
-        }
-        // Where the slope wants to rise beside a flat, the flat is too long: a level part with a rise ends it.
-        for i in (0..n).filter(|i| !self.held[*i]) {
-            let [_, left, right] = gradient(i);
-            let [_, curvatures] = self.models[i].curvatures(self.task.h[i]);
-            let wants = -1e-6 * left.abs().max(right.abs());
-            if i > 0 && self.held[i - 1] && left < wants {
-                wrong.push(i - 1);
-                (sizes[layout.m(i)], sizes[i - 1]) =
-                    self.opened(left, curvatures[0], bottom - before[i - 1]);
-            }
-            if i + 1 < n && self.held[i + 1] && right < wants {
-                wrong.push(i + 1);
-                let node = layout.m(i + 1);
-                (sizes[node], sizes[i + 1]) =
-                    self.opened(right, curvatures[1], bottom - before[i + 1]);
-            }
-        }
-        wrong.sort_unstable();
-        wrong.dedup();
-        wrong
     }
 }

@@ -24,7 +24,7 @@ pub(super) struct Input {
     /// 1, or −1 where a decreasing function is sought.
     pub(super) sign: f64,
     /// Exponents of the units of x, y and the weights.
-    ex: i32,
+    pub(super) ex: i32,
     pub(super) ey: i32,
     ew: i32,
     /// What merged data add to the residual whatever the function is, scaled.
@@ -58,7 +58,7 @@ impl Input {
         let (scaled, ew) = scaled_weights(weights);
         let to_y = PowerOfTwo::new(-ey);
         let mut own = Self {
-            task: Task { h: vec![], y: vec![], w: vec![], bounds: [0.0; 2] },
+            task: Task { h: vec![], y: vec![], w: vec![], bounds: [0.0; 2], bend: vec![] },
             x: Vec::new(),
             base,
             sign: 1.0,
@@ -74,6 +74,9 @@ impl Input {
         while from <= n {
             let near = |k: &usize| x[*k] - x[from] <= NEAR * range;
             let to = (from + 1..=n).take_while(near).last().unwrap_or(from) + 1;
+            if from > 0 {
+                own.task.bend.extend(options.convex.as_ref().map(|signs| signs[from - 1]));
+            }
             let cluster = Cluster::new(&x[from..to], &y[from..to], &scaled[from..to], base, to_y);
             own.push(&cluster);
             from = to;
@@ -83,6 +86,9 @@ impl Input {
         }
         let to_x = PowerOfTwo::new(-ex);
         own.task.h = own.x.windows(2).map(|x| to_x.scale(x[1] - x[0])).collect();
+        if own.task.bend.iter().all(|bend| *bend == 0) {
+            own.task.bend.clear();
+        }
         own.direct(options.increasing, to_y);
         Ok(own)
     }
@@ -102,6 +108,7 @@ impl Input {
             self.sign = -1.0;
             self.task.y.iter_mut().for_each(|y| *y = -*y);
             self.task.bounds = [-bounds[1], -bounds[0]];
+            self.task.bend.iter_mut().for_each(|bend| *bend = -*bend);
         }
         let [low, high] = self.task.bounds;
         self.rigid |= high - low <= NARROW * low.abs().min(high.abs()).clamp(1.0, f64::MAX);
@@ -213,6 +220,21 @@ fn check_options(count: usize, options: &SmoothOptions) -> Result<(), MonotoneEr
             let rule = "must be positive and finite";
             let value = weights[index];
             return Err(MonotoneError::Entry { argument: "weights", index, value, rule });
+        }
+    }
+    if let Some(signs) = &options.convex {
+        if signs.len() + 1 != count {
+            let (found, expected) = (signs.len(), count - 1);
+            return Err(MonotoneError::Length { argument: "convex", found, expected });
+        }
+        if let Some(index) = signs.iter().position(|sign| !(-1..=1).contains(sign)) {
+            let rule = "but every sign must be -1, 0 or 1";
+            return Err(MonotoneError::Convex { index, value: signs[index], rule });
+        }
+        if signs.iter().any(|sign| *sign != 0) && options.penalty == PenaltyChoice::Fixed(0.0) {
+            let rule =
+                "must be positive with convex (without a penalty the function would have kinks)";
+            return Err(MonotoneError::Number { argument: "penalty", value: 0.0, rule });
         }
     }
     let rule = "must be finite and not negative";

@@ -12,7 +12,7 @@ use crate::MonotoneError;
 use crate::interrupt::{GoOn, ask};
 
 /// Distance from a bound that is not there.
-const FAR: f64 = 1e300;
+pub(super) const FAR: f64 = 1e300;
 /// Share of the way to the boundary that a step takes.
 const FRACTION: f64 = 0.99;
 const STEPS: usize = 100;
@@ -26,14 +26,17 @@ pub(super) struct Task {
     pub(super) y: Vec<f64>,
     pub(super) w: Vec<f64>,
     pub(super) bounds: [f64; 2],
+    /// 1 for intervals on which the function is to be convex, −1 for concave, 0 for others; empty: 0.
+    pub(super) bend: Vec<i8>,
 }
 
 /// A monotone function at the nodes, with multipliers.
 #[derive(Debug, Clone)]
 pub(super) struct State {
     pub(super) first: f64,
-    /// Rises, slopes, distances from the bounds ([`Layout`]).
+    /// Rises, slopes, distances from the bounds, arms ([`Layout`]).
     pub(super) sizes: Vec<f64>,
+    /// Those of sizes that need no constraint are 0.
     pub(super) multipliers: Vec<f64>,
     /// `Σ` of their products, relative to the objective: a bound of what is above the optimum, nearly.
     pub(super) gap: f64,
@@ -42,7 +45,7 @@ pub(super) struct State {
 
 impl Task {
     pub(super) fn layout(&self) -> Layout {
-        Layout { n: self.h.len() }
+        Layout { n: self.h.len(), bent: !self.bend.is_empty() }
     }
 
     /// Values from the first one and the rises.
@@ -129,11 +132,14 @@ impl Task {
         let [low, high] = self.bounds;
         let room = |v: f64| if v.is_finite() { v } else { FAR };
         sizes.extend([room(first - low), room(high - last)]);
+        if layout.bent {
+            self.bend_line(slope, &mut sizes);
+        }
         let mut f = Vec::new();
         self.values(first, &sizes, &mut f);
         let mu = mu(self.residual(&f));
-        let multiplier = |v: &f64| if *v == FAR { 0.0 } else { mu / v };
-        let multipliers = sizes.iter().map(multiplier).collect();
+        let multiplier = |k: usize| if self.is_free(k, sizes[k]) { 0.0 } else { mu / sizes[k] };
+        let multipliers = (0..sizes.len()).map(multiplier).collect();
         State { first, sizes, multipliers, gap: f64::INFINITY, steps: 0 }
     }
 }
@@ -147,7 +153,8 @@ pub(super) fn unconstrained(task: &Task, lambda: f64, system: &mut System) -> Op
     let (mut f, mut pull, mut step) = (Vec::new(), Vec::new(), vec![0.0; layout.len()]);
     // A quadratic program: the first solve is the answer, the others only take off rounding errors.
     for round in 0..3 {
-        let models: Vec<Model> = (0..n).map(|i| state.cubic(lambda, i, task.h[i])).collect();
+        let cubic = |i| Model::cubic(lambda, state.slopes(layout, i), state.sizes[i], task.h[i]);
+        let models: Vec<Model> = (0..n).map(cubic).collect();
         if round == 0 {
             system.factor(&task.h, &models, &twice, &none);
         }
@@ -168,24 +175,16 @@ pub(super) fn unconstrained(task: &Task, lambda: f64, system: &mut System) -> Op
     let last = state.first + state.sizes[..n].iter().sum::<f64>();
     let inside = task.bounds[0] <= state.first && last <= task.bounds[1];
     let monotone = |i: usize| {
-        let m = [state.sizes[layout.m(i)], state.sizes[layout.m(i + 1)]];
+        let m = state.slopes(layout, i);
         m[0] >= 0.0 && m[1] >= 0.0 && is_cubic(m, state.sizes[i], task.h[i])
     };
-    (inside && (0..n).all(monotone)).then_some(state)
+    let idle = inside && (0..n).all(monotone) && task.is_bent(&mut state.sizes);
+    idle.then_some(state)
 }
 
 impl State {
-    pub(super) fn slopes(&self, i: usize) -> [f64; 2] {
-        let n = (self.sizes.len() - 3) / 2;
-        [self.sizes[n + i], self.sizes[n + i + 1]]
-    }
-
-    fn cubic(&self, lambda: f64, i: usize, h: f64) -> Model {
-        Model::cubic(lambda, self.slopes(i), self.sizes[i], h)
-    }
-
-    pub(super) fn model(&self, lambda: f64, i: usize, h: f64) -> Model {
-        Model::new(lambda, self.slopes(i), self.sizes[i], h)
+    fn slopes(&self, layout: Layout, i: usize) -> [f64; 2] {
+        [self.sizes[layout.m(i)], self.sizes[layout.m(i + 1)]]
     }
 }
 
@@ -199,9 +198,10 @@ pub(super) fn minimise(
     go_on: GoOn<'_>,
 ) -> Result<State, MonotoneError> {
     let layout = task.layout();
-    let (n, count) = (layout.n, layout.len() as f64);
+    let n = layout.n;
     let centred = |residual: f64| (residual + 1e-3) / n as f64;
     let mut state = start.unwrap_or_else(|| task.state(task.start(), centred));
+    let count = state.multipliers.iter().filter(|z| **z > 0.0).count() as f64;
     let twice = task.twice();
     let (mut models, mut f, mut pull) = (Vec::new(), Vec::new(), Vec::new());
     let mut stiff = vec![0.0; layout.len()];
@@ -211,7 +211,7 @@ pub(super) fn minimise(
     loop {
         ask(go_on)?;
         models.clear();
-        models.extend((0..n).map(|i| state.model(lambda, i, task.h[i])));
+        models.extend((0..n).map(|i| task.model(lambda, i, &state.sizes)));
         task.values(state.first, &state.sizes, &mut f);
         let energy: f64 = models.iter().map(|model: &Model| model.energy).sum();
         let product = dot(&state.sizes, &state.multipliers);
@@ -234,13 +234,14 @@ pub(super) fn minimise(
             // The wanted product over the size, less what the predicted step would add to it: the gradient's other sign.
             let (v, z, by) = (state.sizes[k], state.multipliers[k], predicted[k]);
             let wanted = (centre + part * part * by * (z + stiff[k] * by)) / v;
-            targets[k] = if v == FAR { 0.0 } else { wanted };
+            targets[k] = if z == 0.0 { 0.0 } else { wanted };
             sizes[k] = -targets[k];
         }
         system.solve(&task.h, &models, &pull, &sizes, &mut step);
         let products = (&state.sizes[..], &state.multipliers[..]);
         let part = (FRACTION * reach(products, &stiff, &step, &targets)).min(1.0);
-        state.advance(&stiff, &step, part, &targets);
+        let part = part.min(task.reach_of_ratios(&state.sizes, &step));
+        state.advance(&stiff, (step[layout.low()], &step), part, &targets);
         state.steps += 1;
     }
 }
@@ -274,19 +275,20 @@ fn ahead((sizes, multipliers): (&[f64], &[f64]), stiff: &[f64], step: &[f64], pa
     for k in 0..step.len() {
         let (v, z, by) = (sizes[k], multipliers[k], step[k]);
         let product = (v + part * by) * (z - part * (z + stiff[k] * by));
-        sum += if v == FAR { 0.0 } else { product };
+        sum += if z == 0.0 { 0.0 } else { product };
     }
     sum
 }
 
 impl State {
-    fn advance(&mut self, stiff: &[f64], step: &[f64], part: f64, targets: &[f64]) {
-        let low = self.sizes.len() - 2;
-        self.first += part * step[low];
+    fn advance(&mut self, stiff: &[f64], (first, step): (f64, &[f64]), part: f64, targets: &[f64]) {
+        self.first += part * first;
         for k in 0..step.len() {
             let (v, z) = (self.sizes[k], self.multipliers[k]);
             if v != FAR {
                 self.sizes[k] = v + part * step[k];
+            }
+            if z > 0.0 {
                 self.multipliers[k] = z + part * (targets[k] - z - stiff[k] * step[k]);
             }
         }

@@ -2,7 +2,8 @@
 
 //! Optima for given penalties, and the choice of the penalty: by cross-validation or by the residual it leaves.
 
-use super::finish::{Optimum, active, finish};
+use super::active::active;
+use super::finish::{Optimum, finish};
 use super::input::Input;
 use super::interior::{State, minimise, unconstrained};
 use super::interval::Model;
@@ -19,6 +20,8 @@ const HELD_VALUE: f64 = 1e16;
 pub(super) const LINE: f64 = 1e12;
 /// Scaled penalties below which rounding hides that the function is not the isotonic regression's.
 const NOTHING: f64 = 1e-40;
+/// The same where convexity is asked: the values no longer change in the tenth digit.
+const NOTHING_BENT: f64 = 1e-24;
 /// How near the residual comes to the one given, relative to it, and evaluations at most.
 const NEAR: f64 = 1e-10;
 const EVALUATIONS: usize = 60;
@@ -39,41 +42,56 @@ impl<'a> Optima<'a> {
     pub(super) fn new(input: &'a Input, go_on: GoOn<'a>) -> Self {
         let range: f64 = input.task.h.iter().sum();
         let unit = range.powi(3) * input.task.w.iter().sum::<f64>();
-        Self { input, system: System::new(input.task.h.len()), go_on, unit }
+        Self { input, system: System::new(input.task.layout()), go_on, unit }
     }
 
     /// The optimum for a scaled penalty.
     pub(super) fn at(&mut self, lambda: f64) -> Result<Optimum, MonotoneError> {
         let task = &self.input.task;
-        if lambda < NOTHING || self.input.rigid {
+        if self.is_isotonic(lambda) {
             return Ok(self.isotonic());
         }
-        let lambda = lambda.min(LINE);
+        let lambda = self.clamped(lambda);
         if let Some(state) = unconstrained(task, lambda, &mut self.system) {
-            return Ok(self.without_finish(&state, true));
+            return Ok(self.without_finish(lambda, &state));
         }
         let state = minimise(task, lambda, None, GAP, &mut self.system, self.go_on)?;
         let mut found = finish(task, lambda, &state, &mut self.system, self.go_on)?
-            .unwrap_or_else(|| self.without_finish(&state, true));
+            .unwrap_or_else(|| self.without_finish(lambda, &state));
         found.converged &= state.gap <= GAP;
         Ok(found)
     }
 
+    /// Whether the optimum is the isotonic regression, which may have kinks: not where convexity is asked.
+    fn is_isotonic(&self, lambda: f64) -> bool {
+        self.input.rigid || (lambda < NOTHING && self.input.task.bend.is_empty())
+    }
+
+    fn clamped(&self, lambda: f64) -> f64 {
+        let least = if self.input.task.bend.is_empty() { NOTHING } else { NOTHING_BENT };
+        lambda.clamp(least, LINE)
+    }
+
     /// A state as it stands: rises that are 0 at the optimum are tiny in it.
-    fn without_finish(&self, state: &State, converged: bool) -> Optimum {
+    fn without_finish(&self, lambda: f64, state: &State) -> Optimum {
         let task = &self.input.task;
         let mut f = Vec::new();
         task.values(state.first, &state.sizes, &mut f);
         let (first, steps, residual) = (state.first, state.steps, task.residual(&f));
-        let (held, sizes) = (active(task, state).0, state.sizes.clone());
-        Optimum { first, sizes, held, residual, steps, converged }
+        let (held, sizes) = (active(task, lambda, state).0, state.sizes.clone());
+        Optimum { first, sizes, held, residual, steps, converged: true }
     }
 
     /// The isotonic regression.
     pub(super) fn isotonic(&self) -> Optimum {
         let task = &self.input.task;
         let layout = task.layout();
-        let f = isotonic(&task.y, &task.w, task.bounds);
+        let mut f = isotonic(&task.y, &task.w, task.bounds);
+        if layout.bent {
+            // The data are constant, or the bounds leave no room.
+            let level = f[0];
+            f.fill(level);
+        }
         let mut sizes: Vec<f64> = f.windows(2).map(|f| f[1] - f[0]).collect();
         let mut held: Vec<bool> = sizes.iter().map(|d| *d == 0.0).collect();
         sizes.resize(layout.len(), 0.0);
@@ -89,19 +107,15 @@ impl<'a> Optima<'a> {
         let task = &self.input.task;
         let layout = task.layout();
         let held = &optimum.held;
-        if lambda < NOTHING || self.input.rigid || held[..layout.n].iter().all(|held| *held) {
+        if self.is_isotonic(lambda) || held[..layout.n].iter().all(|held| *held) {
             // One for every block, but for those at the bounds.
             let rises = held[..layout.n].iter().filter(|held| !**held).count() as f64;
             let at = |k: usize| f64::from(u8::from(held[k]));
             return (rises + 1.0 - at(layout.low()) - at(layout.high())).max(0.0);
         }
-        let lambda = lambda.min(LINE);
+        let lambda = self.clamped(lambda);
         let model = |i: usize| {
-            if held[i] {
-                return Model::HELD;
-            }
-            let m = [optimum.sizes[layout.m(i)], optimum.sizes[layout.m(i + 1)]];
-            Model::new(lambda, m, optimum.sizes[i], task.h[i])
+            if held[i] { Model::HELD } else { task.model(lambda, i, &optimum.sizes) }
         };
         let models: Vec<Model> = (0..layout.n).map(model).collect();
         let mut stiff: Vec<f64> = held.iter().map(|held| if *held { HELD } else { 0.0 }).collect();
@@ -171,12 +185,14 @@ impl<'a> Optima<'a> {
 
     /// The scaled penalty whose optimum leaves this scaled residual, +∞ if a straight line leaves no more.
     pub(super) fn of_residual(&mut self, residual: f64, given: f64) -> Result<f64, MonotoneError> {
-        let least = self.isotonic().residual + self.input.within;
+        let bent = !self.input.task.bend.is_empty();
+        let least = if bent { self.at(0.0)? } else { self.isotonic() }.residual + self.input.within;
         if residual < least * (1.0 - 1e-12) {
             let least = self.input.residual_out(least);
-            return Err(MonotoneError::Residual { value: given, least });
+            let of = if bent { "the nearest such function" } else { "the isotonic regression" };
+            return Err(MonotoneError::Residual { of, value: given, least });
         }
-        if residual <= least * (1.0 + 1e-12) || self.input.rigid {
+        if self.input.rigid || residual <= least * (1.0 + 1e-12) {
             return Ok(0.0);
         }
         if self.at(LINE)?.residual + self.input.within <= residual {

@@ -8,11 +8,12 @@
 //! and value `(m, f)` are two rows `(a, b), (0, c)`; they are carried over an interval by writing the state before it in
 //! the state behind it and two unknowns of the interval, which Householder reflections eliminate:
 //! - one cubic: ε and κ, with `m = m' − κ`, `f = f' − ε − hm' + hκ/2`;
-//! - with a level part: d and m itself, with `f = f' − d`.
+//! - with a level part: d and m itself, with `f = f' − d`;
+//! - convex (σ = 1) or concave (−1): the arms a and b, with `m = m' − σ(a + b)`, `f = f' − hm' + σhb`.
 //!
-//! O(N), no square of a condition number, no exchange of rows: the stiff rows come first.
+//! O(N), no square of a condition number. The stiff rows come first: by construction, or, of arms, by exchange.
 
-use super::interval::Model;
+use super::interval::{Form, Model};
 
 /// The stiffness of what is held: its square root is far above all others, and its square is still a number.
 pub(super) const HELD: f64 = 1e120;
@@ -21,15 +22,18 @@ pub(super) const HELD: f64 = 1e120;
 const NEGLIGIBLE: f64 = 1e-280;
 
 /// The sizes of things that must not be negative, in one vector: rises of the n intervals, slopes at the n + 1 nodes,
-/// the distance of the first value from the lower bound and of the last from the upper.
+/// the distance of the first value from the lower bound and of the last from the upper; where convexity is asked
+/// somewhere, two arms of every interval.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Layout {
     pub(super) n: usize,
+    /// Whether there are arms.
+    pub(super) bent: bool,
 }
 
 impl Layout {
     pub(super) fn len(self) -> usize {
-        2 * self.n + 3
+        2 * self.n + 3 + if self.bent { 2 * self.n } else { 0 }
     }
     /// The slope at node i.
     pub(super) fn m(self, i: usize) -> usize {
@@ -40,6 +44,10 @@ impl Layout {
     }
     pub(super) fn high(self) -> usize {
         2 * self.n + 2
+    }
+    /// The arm at an end of interval i.
+    pub(super) fn arm(self, i: usize, end: usize) -> usize {
+        2 * self.n + 3 + 2 * i + end
     }
 }
 
@@ -57,8 +65,8 @@ pub(super) struct System {
 type Rows = [[f64; 4]; 5];
 
 impl System {
-    pub(super) fn new(n: usize) -> Self {
-        let layout = Layout { n };
+    pub(super) fn new(layout: Layout) -> Self {
+        let n = layout.n;
         Self { layout, rows: vec![[0.0; 7]; n], end: [0.0; 3], eliminated: vec![[0.0; 2]; n] }
     }
 
@@ -78,9 +86,17 @@ impl System {
             add(&mut carry, stiff[layout.m(i)] + extra, on_value);
             if i < layout.n {
                 let model = &models[i];
+                if let Form::Bent(sense) = model.form {
+                    let stiff = [0, 1].map(|end| stiff[layout.arm(i, end)]);
+                    let mut rows = bent_rows(&carry, model, h[i], sense, stiff);
+                    (self.rows[i], carry) = eliminate_sorted(&mut rows);
+                    extra = 0.0;
+                    continue;
+                }
                 let mut rows = interval_rows(&carry, model, h[i], stiff[i].sqrt());
                 (self.rows[i], carry) = eliminate(&mut rows);
-                extra = if model.level { model.rows[4] * model.rows[4] } else { 0.0 };
+                let level = model.form == Form::Level;
+                extra = if level { model.rows[4] * model.rows[4] } else { 0.0 };
             }
         }
         self.end = carry;
@@ -103,12 +119,20 @@ impl System {
             let [i00, r01, i11, r0m, r0f, r1m, r1f] = self.rows[i];
             let ([a, b, c], by, h) = (models[i].gradient, sizes[i], h[i]);
             let (g0, g1);
-            if models[i].level {
-                (g0, g1) = (a + by - pf, b + pm);
-                pm = c;
-            } else {
-                (g0, g1) = (a + by - pf, b - pm + 0.5 * h * (pf - by));
-                pm += h * (by - pf);
+            match models[i].form {
+                Form::Level => {
+                    (g0, g1) = (a + by - pf, b + pm);
+                    pm = c;
+                }
+                Form::Cubic => {
+                    (g0, g1) = (a + by - pf, b - pm + 0.5 * h * (pf - by));
+                    pm += h * (by - pf);
+                }
+                Form::Bent(sense) => {
+                    let by = [0, 1].map(|end| sizes[layout.arm(i, end)]);
+                    (g0, g1) = (a + by[0] - sense * pm, b + by[1] + sense * (h * pf - pm));
+                    pm -= h * pf;
+                }
             }
             let q0 = g0 * i00;
             let q1 = (g1 - r01 * q0) * i11;
@@ -129,8 +153,15 @@ impl System {
             let [q0, q1] = self.eliminated[i];
             let u1 = (-q1 - r1m * m - r1f * f) * i11;
             let u0 = (-q0 - r01 * u1 - r0m * m - r0f * f) * i00;
-            let d = if models[i].level { u0 } else { u0 + h[i] * (m - 0.5 * u1) };
-            m = if models[i].level { u1 } else { m - u1 };
+            let d;
+            (d, m) = match models[i].form {
+                Form::Level => (u0, u1),
+                Form::Cubic => (u0 + h[i] * (m - 0.5 * u1), m - u1),
+                Form::Bent(sense) => {
+                    (step[layout.arm(i, 0)], step[layout.arm(i, 1)]) = (u0, u1);
+                    (h[i] * (m - sense * u1), m - sense * (u0 + u1))
+                }
+            };
             f -= d;
             step[i] = d;
             step[layout.m(i)] = m;
@@ -156,17 +187,27 @@ impl System {
             let (k1, k0) = ([0.0, i11], [i00, -r01 * i00 * i11]);
             // The state before in the one behind and ξ.
             let (mx, fx, mk, fk);
-            if models[i].level {
-                mx = [-g1[0], -g1[1]];
-                mk = k1;
-                fx = [g0[0], 1.0 + g0[1]];
-                fk = [-k0[0], -k0[1]];
-            } else {
-                let half = 0.5 * h[i];
-                mx = [1.0 + g1[0], g1[1]];
-                mk = [-k1[0], -k1[1]];
-                fx = [-h[i] + g0[0] - half * g1[0], 1.0 + g0[1] - half * g1[1]];
-                fk = [-k0[0] + half * k1[0], -k0[1] + half * k1[1]];
+            match models[i].form {
+                Form::Level => {
+                    mx = [-g1[0], -g1[1]];
+                    mk = k1;
+                    fx = [g0[0], 1.0 + g0[1]];
+                    fk = [-k0[0], -k0[1]];
+                }
+                Form::Cubic => {
+                    let half = 0.5 * h[i];
+                    mx = [1.0 + g1[0], g1[1]];
+                    mk = [-k1[0], -k1[1]];
+                    fx = [-h[i] + g0[0] - half * g1[0], 1.0 + g0[1] - half * g1[1]];
+                    fk = [-k0[0] + half * k1[0], -k0[1] + half * k1[1]];
+                }
+                Form::Bent(sense) => {
+                    let by = sense * h[i];
+                    mx = [1.0 + sense * (g0[0] + g1[0]), sense * (g0[1] + g1[1])];
+                    mk = [-sense * (k0[0] + k1[0]), -sense * (k0[1] + k1[1])];
+                    fx = [-h[i] - by * g1[0], 1.0 - by * g1[1]];
+                    fk = [by * k1[0], by * k1[1]];
+                }
             }
             let form = |u: [f64; 2], v: [f64; 2]| {
                 cov[0] * u[0] * v[0] + cov[1] * (u[0] * v[1] + u[1] * v[0]) + cov[2] * u[1] * v[1]
@@ -206,7 +247,7 @@ fn hypot(a: f64, b: f64) -> f64 {
 #[inline(always)]
 fn interval_rows(&[a, b, c]: &[f64; 3], model: &Model, h: f64, on_rise: f64) -> Rows {
     let r = model.rows;
-    if model.level {
+    if model.form == Form::Level {
         return [
             [r[0], r[1], r[2], 0.0],
             [on_rise, 0.0, 0.0, 0.0],
@@ -225,12 +266,40 @@ fn interval_rows(&[a, b, c]: &[f64; 3], model: &Model, h: f64, on_rise: f64) -> 
     ]
 }
 
+/// The same of an interval that is to be convex or concave, with stiffness of its arms.
+fn bent_rows(&[a, b, c]: &[f64; 3], model: &Model, h: f64, sense: f64, stiff: [f64; 2]) -> Rows {
+    let r = model.rows;
+    let by = sense * h;
+    [
+        [r[0], r[1], 0.0, 0.0],
+        [(r[2] * r[2] + stiff[0]).sqrt(), 0.0, 0.0, 0.0],
+        [0.0, (r[3] * r[3] + stiff[1]).sqrt(), 0.0, 0.0],
+        [-sense * a, b * by - sense * a, a - b * h, b],
+        [0.0, c * by, -c * h, c],
+    ]
+}
+
+/// As [`eliminate`], with the row of the largest entry first in every column.
+fn eliminate_sorted(rows: &mut Rows) -> ([f64; 7], [f64; 3]) {
+    for k in 0..3 {
+        let largest = (k..5).max_by(|i, j| rows[*i][k].abs().total_cmp(&rows[*j][k].abs()));
+        rows.swap(k, largest.unwrap_or(k));
+        reflect(rows, k);
+    }
+    triangle(rows)
+}
+
 /// Householder reflections of the first three columns; the norm of what is left of the last.
 #[inline(always)]
 fn eliminate(rows: &mut Rows) -> ([f64; 7], [f64; 3]) {
     reflect(rows, 0);
     reflect(rows, 1);
     reflect(rows, 2);
+    triangle(rows)
+}
+
+#[inline(always)]
+fn triangle(rows: &Rows) -> ([f64; 7], [f64; 3]) {
     let c = hypot(rows[3][3], rows[4][3]);
     let [[r00, r01, r0m, r0f], [_, r11, r1m, r1f], [_, _, a, b], _, _] = *rows;
     ([1.0 / r00, r01, 1.0 / r11, r0m, r0f, r1m, r1f], [a, b, c])

@@ -5,6 +5,8 @@ use super::*;
 use crate::minimal_bending;
 use rand::{Rng, SeedableRng, rngs::StdRng};
 
+mod convex;
+
 fn with(penalty: PenaltyChoice) -> SmoothOptions {
     SmoothOptions { penalty, ..SmoothOptions::default() }
 }

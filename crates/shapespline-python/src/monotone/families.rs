@@ -62,6 +62,11 @@ impl<'py> Data<'py> {
         copy
     }
 
+    /// The number of points.
+    pub(super) fn points(&self) -> usize {
+        self.x.values().len()
+    }
+
     /// Whether y has one axis.
     pub(super) fn is_one(&self) -> bool {
         self.layout.is_one()

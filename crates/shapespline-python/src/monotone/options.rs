@@ -240,6 +240,22 @@ impl ConvexOption {
     }
 }
 
+impl ConvexOption {
+    /// The signs of the intervals between `points` points; a number is for all.
+    pub(crate) fn of_one(self, points: usize) -> PyResult<Option<Vec<i8>>> {
+        let m = points.saturating_sub(1);
+        match self {
+            Self::Signs { values, shape } if shape.is_empty() => Ok(Some(vec![values[0]; m])),
+            Self::Signs { values, shape } if shape == [m] => Ok(Some(values)),
+            Self::Signs { shape, .. } => {
+                let rule = format!("be one sign or one per interval: shape {}", tuple(&[m]));
+                Err(must("convex", &[], rule, &shape[..]))
+            }
+            Self::Nowhere | Self::Data => Ok(None),
+        }
+    }
+}
+
 pub(crate) fn convex(object: &Bound<'_, PyAny>) -> PyResult<ConvexOption> {
     if object.is_none() {
         return Ok(ConvexOption::Nowhere);

@@ -9,7 +9,7 @@ use super::{
     cubic::MonotoneCubic,
     families::{Data, object},
     fits::Fits,
-    options,
+    options::{self, ConvexOption},
 };
 use crate::{
     error::{invalid, must},
@@ -113,13 +113,17 @@ impl MonotoneSmoothing {
 /// increasing : bool or None
 ///     Whether the function increases. None takes the sign of the weighted regression line;
 ///     ``smoothing.increasing`` says which.
+/// convex : {-1, 0, 1} or array_like of int, shape (n - 1,), optional
+///     Where the function is to be convex (1) or concave (-1) as well: everywhere, or per interval
+///     between the x, 0 where it may bend either way.
 /// bounds : pair of float or None, optional
 ///     Lower and upper bound of the function, None where there is none. The data may lie outside.
 ///
 /// Returns
 /// -------
 /// MonotoneCubic
-///     The function of least ``Σ w (y − f(x))² + λ ∫ f''² dx`` among all monotone functions. Its attribute
+///     The function of least ``Σ w (y − f(x))² + λ ∫ f''² dx`` among all monotone functions, with
+///     ``convex`` among those that are convex and concave as well where that is asked. Its attribute
 ///     ``smoothing`` is a `MonotoneSmoothing`; its ``x`` and ``y`` are the (merged) abscissae and its own
 ///     values there.
 ///
@@ -127,8 +131,9 @@ impl MonotoneSmoothing {
 /// ------
 /// ValueError
 ///     If an argument holds unusable values: NaN, infinities, x that decreases or is constant, weights
-///     that are not positive, both a residual and a penalty, a residual below that of the isotonic
-///     regression, a lower bound that is not below the upper one. The message says where.
+///     that are not positive, both a residual and a penalty, a residual below the least possible one
+///     (that of the isotonic regression), a lower bound that is not below the upper one, signs other than
+///     -1, 0 and 1, no penalty with ``convex`` (the function would have kinks). The message says where.
 /// TypeError
 ///     If an argument is of a wrong kind.
 ///
@@ -140,7 +145,9 @@ impl MonotoneSmoothing {
 /// -----
 /// The objective is jointly convex in the first value, the rises and the slopes; an interior-point
 /// method and Newton's method solve it to rounding, in O(n) per step of some 20. Where monotonicity is
-/// no constraint, the function equals SciPy's ``make_smoothing_spline(x, y, w, lam)``.
+/// no constraint, the function equals SciPy's ``make_smoothing_spline(x, y, w, lam)``. The second
+/// derivative is continuous but where intervals of which convexity is asked differently meet, at points
+/// of slope 0 beside such intervals, and at the ends of constant parts.
 ///
 /// Examples
 /// --------
@@ -150,10 +157,12 @@ impl MonotoneSmoothing {
 /// (True, True)
 #[pyfunction]
 #[pyo3(
-    signature = (x, y, *, weights=None, residual=None, penalty=None, increasing=Some(true), bounds=None),
+    signature = (x, y, *, weights=None, residual=None, penalty=None, increasing=Some(true), convex=None,
+                 bounds=None),
     text_signature = "(x, y, *, weights=None, residual=None, penalty='gcv', increasing=True, \
-                      bounds=None)"
+                      convex=None, bounds=None)"
 )]
+#[allow(clippy::too_many_arguments)]
 pub(crate) fn smooth_monotone<'py>(
     x: &Bound<'py, PyAny>,
     y: &Bound<'py, PyAny>,
@@ -161,6 +170,7 @@ pub(crate) fn smooth_monotone<'py>(
     #[pyo3(from_py_with = residual)] residual: Option<f64>,
     #[pyo3(from_py_with = penalty)] penalty: Option<f64>,
     #[pyo3(from_py_with = increasing)] increasing: Option<bool>,
+    #[pyo3(from_py_with = convex)] convex: Option<ConvexOption>,
     #[pyo3(from_py_with = bounds)] bounds: Option<[f64; 2]>,
 ) -> PyResult<Bound<'py, MonotoneCubic>> {
     let choice = match (residual, penalty) {
@@ -176,8 +186,15 @@ pub(crate) fn smooth_monotone<'py>(
     if !data.is_one() {
         return Err(must("y", &[], "have one axis", array("y", y)?.shape()));
     }
-    let options =
-        SmoothOptions { weights, penalty: choice, increasing, bounds, ..SmoothOptions::default() };
+    let convex = convex.map(|convex| convex.of_one(data.points())).transpose()?.flatten();
+    let options = SmoothOptions {
+        weights,
+        penalty: choice,
+        increasing,
+        convex,
+        bounds,
+        ..SmoothOptions::default()
+    };
     let fits =
         data.fit(x.py(), |x, y, _, go_on| monotone::smooth_monotone_with(x, y, &options, go_on))?;
     Bound::new(x.py(), object(Fits::Cubic(fits), data.into_layout(), MonotoneCubic))
@@ -217,6 +234,18 @@ fn increasing(object: &Bound<'_, PyAny>) -> PyResult<Option<bool>> {
             PyTypeError::new_err(text)
         })
     })
+}
+
+/// Signs: one for all intervals or one each. What noisy data are says nothing of the function.
+fn convex(object: &Bound<'_, PyAny>) -> PyResult<Option<ConvexOption>> {
+    match text(object) {
+        Some(name) => {
+            let expected =
+                "None, 1, -1, an array of signs per interval (noisy data bend both ways)";
+            Err(unknown("convex", &name, expected))
+        }
+        None => options::convex(object).map(Some),
+    }
 }
 
 fn bounds(object: &Bound<'_, PyAny>) -> PyResult<Option<[f64; 2]>> {

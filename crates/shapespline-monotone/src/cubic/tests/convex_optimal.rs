@@ -6,7 +6,7 @@ use super::*;
 use crate::reference::quadratic;
 
 impl MonotoneCubic {
-    pub(super) fn seconds(&self) -> Vec<[f64; 2]> {
+    pub(crate) fn seconds(&self) -> Vec<[f64; 2]> {
         match &self.spline.kind {
             crate::spline::Kind::Cubic { z } => {
                 z.iter().map(|z| z.map(|z| self.spline.units.derivative_out(z, 2))).collect()
