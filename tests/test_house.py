@@ -154,6 +154,18 @@ def test_the_makefile_names_the_published_crates_from_below():
         assert below <= set(crates[:k])
 
 
+def test_the_fuzzers_lock_file_knows_what_they_reach():
+    """They are a workspace of their own (nightly), which no other command brings up to date."""
+    locked = {
+        package["name"]: package for package in toml("tests", "fuzz", "Cargo.lock")["package"]
+    }
+    reached = dependencies(toml("tests", "rust", "Cargo.toml"), "dependencies")
+    assert reached <= {d.split()[0] for d in locked["shapespline-tests"]["dependencies"]}
+    for crate in PUBLISHED:
+        needed = {d for d in dependencies(MANIFESTS[crate], "dependencies") if d in MANIFESTS}
+        assert needed <= {d.split()[0] for d in locked[crate]["dependencies"]}, crate
+
+
 # CI
 
 
