@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! What is 0 at the optimum: a first answer from the interior point, and what the multipliers of Newton's answer say of it.
 
 use super::finish::Newton;

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! What smoothing asks of convexity: arms of intervals, and the function to start from.
 //!
 //! A convex interval has arms `a = δ − m₀ ≥ 0` and `b = m₁ − δ ≥ 0`, by which the slopes at its ends differ from its

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Smoothing by monotone functions that are convex and concave where that is asked.
 use super::*;
 use crate::reference::quadratic;
