@@ -5,7 +5,7 @@
 #   make check   formatting, lints, stubs, types, `make test`, then `make docs`: what CI runs
 #   make bench   speed and memory beside SciPy's, as one table
 #   make docs    the documentation of both languages in site/: pages and notebooks executed, warnings are errors
-#   make packages  wheel, sdist and crates, built and tried in clean environments on CPython 3.10 to 3.13 (takes long)
+#   make packages  wheel, sdist and crates, built and tried in clean environments on CPython 3.10 to 3.14 (takes long)
 #   make powerset  every crate under every set of its features (needs cargo-hack)
 #   make fuzz    every fuzz target for FUZZ seconds (needs cargo-fuzz and nightly)
 #   make clean   forget all of the above
