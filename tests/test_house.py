@@ -131,6 +131,15 @@ def test_every_crate_opens_with_an_example(crate):
     assert readme in lib.replace("#!", "#")
 
 
+def test_the_facade_documents_its_modules_itself():
+    """Links to a crate that is documented later, or elsewhere, are dead."""
+    lib = read("crates", "shapespline", "src", "lib.rs")
+    modules = re.findall(r"^(.*)\npub use (shapespline_\w+) as \w+;$", lib, re.MULTILINE)
+    below = dependencies(MANIFESTS["shapespline"], "dependencies")
+    assert {crate for _, crate in modules} == {name.replace("-", "_") for name in below}
+    assert {before for before, _ in modules} == {"#[doc(inline)]"}
+
+
 def test_what_is_declared_is_used():
     members = [*MANIFESTS, "../tests/rust"]
     everywhere = set()
