@@ -195,6 +195,39 @@ def test_periodic_data_close_smoothly(rng):
         np.testing.assert_allclose(g(q), f(q), atol=1e-9)
 
 
+def test_the_inverse_of_a_phase_goes_on_period_by_period(rng):
+    for case in range(scaled(300)):
+        n = int(rng.integers(2, 12))
+        x = np.cumsum(rng.uniform(0.1, 1, n))
+        sign = 1 if case % 2 else -1
+        y = sign * np.cumsum(rng.exponential(size=n)) + rng.normal()
+        f = ss.MonotoneCubic(x, y, ends="periodic", extrapolate="periodic")
+        period, rise = x[-1] - x[0], y[-1] - y[0]
+        v = rng.uniform(min(y[0], y[-1]), max(y[0], y[-1]), 300)
+        within = f.inverse(v)
+        for k in (-1000, -3, -1, 1, 2, 77):
+            far = f.inverse(v + k * rise)
+            # Values and places far away have fewer digits, places also where the slope is small.
+            value = 16 * (
+                np.spacing(abs(v) + abs(k * rise)) + np.spacing(abs(far)) * f(far, 1) * sign
+            )
+            np.testing.assert_array_less(abs(f(far) - (v + k * rise)), value)
+            place = np.cbrt(value / abs(rise)) * period + 1e-12 * abs(k)
+            np.testing.assert_array_less(abs(far - (within + k * period)), 4 * place)
+            assert f.inverse(v[0] + k * rise) == pytest.approx(far[0], rel=1e-12, abs=4 * place[0])
+            order = np.argsort(v)
+            sorted_ones = f.inverse((v + k * rise)[order])
+            np.testing.assert_allclose(sorted_ones, far[order], rtol=0, atol=4 * place.max())
+        # At whole periods nothing is rounded but the sum.
+        np.testing.assert_allclose(f.inverse(y[0] + 2 * rise), x[0] + 2 * period, rtol=1e-14)
+    one_sided = ss.MonotoneCubic(
+        [0, 1, 3], [0, 2, 4], ends="periodic", extrapolate=(False, "periodic")
+    )
+    assert np.isnan(one_sided.inverse(-1.0))
+    assert np.isnan(one_sided.inverse([-1.0])[0])
+    assert one_sided.inverse(4 + 4 + 2) == pytest.approx(3 + 3 + 1)
+
+
 def test_min_slope_is_kept(rng):
     for case in range(scaled(300)):
         x = np.cumsum(rng.uniform(0.1, 1, 9))

@@ -22,6 +22,7 @@ mod problem;
 mod profile;
 mod ramp;
 mod stretch;
+mod sweep;
 #[cfg(test)]
 mod tests;
 

@@ -3,8 +3,9 @@
 //! The inverse function of strictly monotone data: quantiles of a distribution function, and the like.
 
 use crate::MonotoneError;
-use crate::extrapolation::Continuation;
+use crate::extrapolation::{Continuation, Extrapolation};
 use crate::locate::{Locator, Searcher};
+use crate::periodic::wrapped;
 use crate::record::Record;
 use crate::spline::MonotoneSpline;
 use crate::tiles::{self, TILE};
@@ -68,7 +69,8 @@ impl MonotoneSpline {
     }
 
     /// x with f(x) = y for every query. Outside the range of the data what the extrapolation there says: of a tangent line
-    /// its inverse (NaN where it is level), of the end value the end, else NaN. NaN gives NaN.
+    /// its inverse (NaN where it is level), of a function that rises by the same every period the place in the period where
+    /// it has this value, of the end value the end, else NaN. NaN gives NaN.
     ///
     /// The residual f(x) − y is of the size of an ulp of y, or of the change of f over an ulp of x where that is
     /// larger. An iteration of fourth order for many at once; what it does not finish goes to one that never leaves
@@ -104,11 +106,46 @@ impl MonotoneSpline {
     pub fn inverse(&self, y: f64) -> Result<f64, MonotoneError> {
         let inverse = self.inverted()?;
         let search = self.inverse_searcher(inverse, false);
-        Ok(self.inverse_at(search.find(if inverse.falling { -y } else { y }), y))
+        let (shift, y) = self.in_first_period(y);
+        Ok(self.inverse_at(search.find(if inverse.falling { -y } else { y }), y) + shift)
+    }
+
+    /// A value beyond those of the data as that of a function that rises by the same every period: how far the period is
+    /// from the first one, and the value there.
+    fn in_first_period(&self, y: f64) -> (f64, f64) {
+        let n = self.y.len() - 1;
+        let (first, last) = (self.y[0], self.y[n]);
+        let (below, above) =
+            if first < last { (y < first, y > last) } else { (y > first, y < last) };
+        if !(below || above) || self.extrapolation().side(above) != Continuation::Periodic(1) {
+            return (0.0, y);
+        }
+        let sign = (last - first).signum();
+        let (count, place) = wrapped(sign * y, sign * first, sign * last);
+        (count * (self.x[self.x.len() - 1] - self.x[0]), sign * place)
     }
 
     /// The places of up to [`TILE`] values.
     fn inverse_tile(&self, search: Searcher<'_>, falling: bool, queries: &[f64]) -> [f64; TILE] {
+        let Extrapolation { below, above } = self.extrapolation();
+        if below != Continuation::Periodic(1) && above != Continuation::Periodic(1) {
+            return self.inverse_tile_within(search, falling, queries);
+        }
+        let (mut y, mut shifts) = ([0.0; TILE], [0.0; TILE]);
+        for (j, query) in queries.iter().enumerate() {
+            (shifts[j], y[j]) = self.in_first_period(*query);
+        }
+        let out = self.inverse_tile_within(search, falling, &y[..queries.len()]);
+        std::array::from_fn(|j| out[j] + shifts[j])
+    }
+
+    /// The same of values that are not periods away.
+    fn inverse_tile_within(
+        &self,
+        search: Searcher<'_>,
+        falling: bool,
+        queries: &[f64],
+    ) -> [f64; TILE] {
         let mut y = [self.y[0]; TILE];
         y[..queries.len()].copy_from_slice(queries);
         let mut keys = y;

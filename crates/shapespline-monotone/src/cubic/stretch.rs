@@ -12,11 +12,9 @@ use super::layer::Layer;
 use super::piece::Piece;
 use std::ops::Range;
 
-/// Red–black sweeps that give Newton's method its start, and steps of a node in each.
-const SWEEPS: usize = 3;
-const SWEEP_STEPS: usize = 3;
-/// Relative steps at which a sweep leaves a node.
-const SWEEP_ENOUGH: f64 = 1.0 / 64.0;
+/// Steps of Newton's method after which slopes that are asked for convexity are swept again: over many decades steps that
+/// suit one slope may be wrong for the next.
+const SWEEPS_AFTER: usize = 25;
 /// Steps of Newton's method at most: data over hundreds of decades take a hundred or so, a million rough points thirty,
 /// most others less than ten.
 const STEPS: usize = 400;
@@ -29,6 +27,9 @@ const BESIDE: usize = 24;
 const NOTHING: f64 = 7.888_609_052_210_118e-31; // 2⁻¹⁰⁰
 /// What the energy may rise by rounding, relative to it.
 const ALLOWANCE: f64 = 1e-13;
+/// The slope of the energy at the end of a step, relative to that at its start, that shortens the step; not below this.
+const OVERSHOT: f64 = 0.5;
+const LEAST_CUT: f64 = 1.0 / 64.0;
 const TINY_ROOT: f64 = 1e-160;
 
 /// A stretch, in the direction of its data.
@@ -150,11 +151,7 @@ impl<'a> Stretch<'a> {
     ) -> Steps {
         if !warm {
             self.start(m);
-            for parity in (0..2 * SWEEPS).map(|k| (k + 1) % 2) {
-                for i in (parity..m.len()).step_by(2).filter(|&i| !self.is_held(i)) {
-                    m[i] = if self.is_bent(i) { self.bent(m, i) } else { self.relaxed(m, i) };
-                }
-            }
+            self.sweep(m);
         }
         self.set_base(m);
         let steps = self.settle(m, room);
@@ -167,65 +164,6 @@ impl<'a> Stretch<'a> {
         steps
     }
 
-    /// Harmonic means of the secants, with which every interval is one cubic; the secant at free ends.
-    fn start(&self, m: &mut [f64]) {
-        let n = self.h.len();
-        let secant = |i: usize| self.d[i] / self.h[i];
-        for i in (0..=n).filter(|&i| !self.is_held(i)) {
-            let mean = if i == 0 || i == n {
-                secant(i.min(n - 1))
-            } else {
-                let (a, b) = (secant(i - 1), secant(i));
-                2.0 * b * (a / (a + b))
-            };
-            m[i] = mean.max(self.bound(i));
-        }
-        self.start_bent(m);
-    }
-
-    /// The slope of node i that is best for those of its neighbours, nearly: the scalar convex problem, in a bracket.
-    fn relaxed(&self, m: &[f64], i: usize) -> f64 {
-        let bound = self.bound(i);
-        let (mut low, mut high) = (bound, f64::INFINITY);
-        let mut t = m[i];
-        for _ in 0..SWEEP_STEPS {
-            let (mut gradient, mut second) = (0.0, 0.0);
-            if i > 0 {
-                let p = self.piece(i - 1, [m[i - 1], t]);
-                (gradient, second) = (p.gradient[1], p.hessian[2]);
-            }
-            if i < self.h.len() {
-                let p = self.piece(i, [t, m[i + 1]]);
-                (gradient, second) = (gradient + p.gradient[0], second + p.hessian[0]);
-            }
-            let next = if gradient < 0.0 {
-                low = t;
-                t - gradient / second
-            } else if gradient > 0.0 {
-                high = t;
-                // In the square: the gradient of an interval with a level part is quadratic in the slope.
-                let size = t - bound;
-                let square = size * size - 2.0 * size * gradient / second;
-                bound + if square > 0.0 { square.sqrt() } else { 0.25 * size }
-            } else {
-                return t;
-            };
-            let outside = !(next > low && next < high);
-            let moved = if outside && high.is_finite() {
-                let (a, b) = (low - bound, high - bound);
-                bound + (a.max(1e-4 * b) * b).sqrt()
-            } else {
-                next
-            };
-            let small = (moved - t).abs() <= SWEEP_ENOUGH * moved;
-            t = moved;
-            if small {
-                break;
-            }
-        }
-        t
-    }
-
     /// Newton's method, until it ends or some intervals turn out to be straight.
     pub(super) fn newton(&mut self, m: &mut [f64], room: &mut Room) -> (Steps, Vec<usize>) {
         if self.nodes() == 2 && self.held == [true, true] {
@@ -233,22 +171,35 @@ impl<'a> Stretch<'a> {
         }
         self.evaluate(m, &mut room.now);
         for solves in 1..=STEPS {
+            if !self.bend.is_empty() && solves.is_multiple_of(SWEEPS_AFTER) {
+                let (before, energy) = (m.to_vec(), room.now.energy.iter().sum::<f64>());
+                self.sweep(m);
+                self.evaluate(m, &mut room.now);
+                // Negated: an energy that is not a number is not less.
+                if !(room.now.energy.iter().sum::<f64>() <= energy) {
+                    m.copy_from_slice(&before);
+                    self.evaluate(m, &mut room.now);
+                }
+            }
             let Room { now, next, trial, step, pivot } = room;
             self.solve(m, now, step, pivot);
             let mut t = 1.0;
             loop {
                 self.moved(m, now, step, t, trial);
                 self.evaluate(trial, next);
-                let (mut rise, mut energy, mut slope) = (0.0, 0.0, 0.0);
+                let (mut rise, mut energy, mut slope, mut ahead) = (0.0, 0.0, 0.0, 0.0);
                 for (a, b) in now.energy.iter().zip(&next.energy) {
                     rise += b - a;
                     energy += a.abs();
                 }
                 for i in 0..m.len() {
                     slope += now.gradient[i] * (trial[i] - m[i]);
+                    ahead += next.gradient[i] * (trial[i] - m[i]);
                 }
+                // Where energies differ by many decades, rounding of large ones hides that small ones rise.
+                let far = !self.bend.is_empty() && ahead > OVERSHOT * slope.abs() && t > LEAST_CUT;
                 // Negated: an energy that is not a number is no descent.
-                if rise <= 1e-4 * slope.min(0.0) + ALLOWANCE * energy || t < 1e-9 {
+                if (rise <= 1e-4 * slope.min(0.0) + ALLOWANCE * energy && !far) || t < 1e-9 {
                     break;
                 }
                 t *= 0.5;

@@ -107,7 +107,8 @@ impl MonotoneSpline {
     /// y : array_like
     ///     Values, of any shape. NaN gives NaN. Outside the data's range what ``extrapolate`` of the
     ///     function says for that end: of the tangent line its inverse (NaN where it is level), with
-    ///     ``"clip"`` the end knot, else NaN.
+    ///     ``"clip"`` the end knot, of a phase (``ends="periodic"`` with a rise) the place in the period
+    ///     that has the value, else NaN.
     ///
     /// Returns
     /// -------
