@@ -33,6 +33,7 @@ mod interior;
 mod interval;
 mod penalty;
 mod pool;
+mod rows;
 mod system;
 #[cfg(test)]
 mod tests;

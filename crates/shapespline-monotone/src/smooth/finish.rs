@@ -61,6 +61,9 @@ pub(super) struct Newton<'a> {
     pub(super) models: Vec<Model>,
     pub(super) f: Vec<f64>,
     pub(super) pull: Vec<f64>,
+    /// Models and values before a step.
+    before: (Vec<Model>, Vec<f64>),
+    trial: Vec<f64>,
 }
 
 /// The optimum near an interior point's answer, or what is nearer to it than that; `None` where nothing is.
@@ -132,7 +135,9 @@ impl<'a> Newton<'a> {
     fn new(task: &'a Task, lambda: f64) -> Self {
         let layout = task.layout();
         let (held, centred) = (vec![false; layout.len()], vec![0.0; layout.len()]);
-        Self { task, lambda, layout, held, centred, models: vec![], f: vec![], pull: vec![] }
+        let (models, f, pull, trial) = (vec![], vec![], vec![], vec![]);
+        let before = (vec![], vec![]);
+        Self { task, lambda, layout, held, centred, models, f, pull, before, trial }
     }
 
     fn evaluate(&mut self, first: f64, sizes: &[f64]) {
@@ -200,23 +205,30 @@ impl<'a> Newton<'a> {
     /// Take the step, or as much of it as makes the objective smaller: the largest relative change for all of it,
     /// `None` where hardly anything of it does.
     fn advance(&mut self, first: &mut f64, sizes: &mut Vec<f64>, step: &[f64]) -> Option<f64> {
-        let (models, f) = (self.models.clone(), self.f.clone());
-        let mut trial = sizes.clone();
-        let mut t = self.reach(sizes, step);
-        while t > LEAST_PART {
+        // Memory is used again: fresh pages cost as much as the arithmetic.
+        let (mut models, mut f) = std::mem::take(&mut self.before);
+        std::mem::swap(&mut models, &mut self.models);
+        std::mem::swap(&mut f, &mut self.f);
+        let mut trial = std::mem::take(&mut self.trial);
+        trial.clone_from(sizes);
+        let (mut t, mut found) = (self.reach(sizes, step), None);
+        while t > LEAST_PART && found.is_none() {
             self.moved(sizes, step, t, &mut trial, &models);
             let start = *first + t * step[self.layout.low()];
             self.evaluate(start, &trial);
             let (rise, size) = self.rise(&models, &f);
             if rise <= ALLOWANCE * size {
-                let largest = self.largest(sizes, &trial) / t;
-                (*first, *sizes) = (start, trial);
-                return largest.is_finite().then_some(largest);
+                found = Some(self.largest(sizes, &trial) / t);
+                *first = start;
+                std::mem::swap(sizes, &mut trial);
             }
             t *= 0.5;
         }
-        self.evaluate(*first, sizes);
-        None
+        if found.is_none() {
+            self.evaluate(*first, sizes);
+        }
+        (self.before, self.trial) = ((models, f), trial);
+        found.filter(|largest| largest.is_finite())
     }
 
     /// The part of a step that leaves something of all arms, and of the slopes beside them.

@@ -261,10 +261,14 @@ fn reach(
     let mut most = FRACTION;
     for k in 0..step.len() {
         let (v, z) = (sizes[k], multipliers[k]);
-        // Shares that one whole step takes away of the size and of the multiplier.
-        most = most.max(-step[k] / v);
-        let down = z + stiff[k] * step[k] - targets[k];
-        most = most.max(if z > 0.0 { down / z } else { 0.0 });
+        // Shares that one whole step takes away of the size and of the multiplier; quotients only of the few that count.
+        let [by, down] = [-step[k], z + stiff[k] * step[k] - targets[k]];
+        if by > most * v {
+            most = by / v;
+        }
+        if down > most * z {
+            most = down / z;
+        }
     }
     1.0 / most
 }

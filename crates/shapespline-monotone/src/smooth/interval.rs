@@ -37,7 +37,31 @@ pub(super) enum Form {
     Bent(f64),
 }
 
+impl Form {
+    pub(super) fn is_bent(self) -> bool {
+        matches!(self, Self::Bent(_))
+    }
+
+    /// Of `−f(−x)`.
+    #[inline(always)]
+    pub(super) fn reflected(self) -> Self {
+        if let Self::Bent(sense) = self { Self::Bent(-sense) } else { self }
+    }
+}
+
 impl Model {
+    /// Of `−f(−x)`: the ends are swapped.
+    #[inline(always)]
+    pub(super) fn reflected(&self) -> Self {
+        let ([a, b, c], r) = (self.gradient, self.rows);
+        let (gradient, rows) = match self.form {
+            Form::Level => ([a, c, b], [r[0], r[2], r[1], r[4], r[3]]),
+            Form::Cubic => ([a, -b, c], r),
+            Form::Bent(_) => ([b, a, c], [r[1], r[0], r[3], r[2], r[4]]),
+        };
+        Self { energy: self.energy, form: self.form.reflected(), gradient, rows }
+    }
+
     /// What a rise that is held at 0 between slopes held at 0 adds.
     pub(super) const HELD: Self =
         Self { energy: 0.0, form: Form::Level, gradient: [0.0; 3], rows: [0.0; 5] };
@@ -52,15 +76,18 @@ impl Model {
 
     /// One cubic, whether or not it is monotone.
     pub(super) fn cubic(lambda: f64, m: [f64; 2], d: f64, h: f64) -> Self {
-        let delta = d / h;
+        let inverse = 1.0 / h;
+        let delta = d * inverse;
         // ε from the deviations from the secant: no cancellation on straight data.
         let (kappa, epsilon) = (m[1] - m[0], -0.5 * h * ((m[0] - delta) + (m[1] - delta)));
-        let stiff = [24.0 * lambda / (h * h * h), 2.0 * lambda / h];
+        let bending = 2.0 * lambda * inverse;
+        let stiff = [12.0 * (inverse * inverse) * bending, bending];
+        let root = bending.sqrt();
         Self {
             energy: 0.5 * (stiff[0] * epsilon * epsilon + stiff[1] * kappa * kappa),
             form: Form::Cubic,
             gradient: [stiff[0] * epsilon, stiff[1] * kappa, 0.0],
-            rows: [stiff[0].sqrt(), stiff[1].sqrt(), 0.0, 0.0, 0.0],
+            rows: [12f64.sqrt() * inverse * root, root, 0.0, 0.0, 0.0],
         }
     }
 
@@ -153,7 +180,8 @@ fn ramp(lambda: f64, a: f64, b: f64, h: f64) -> (f64, [f64; 2], [f64; 3]) {
 
 /// Whether the least energy is that of one cubic.
 pub(super) fn is_cubic(m: [f64; 2], d: f64, h: f64) -> bool {
-    m[0] + m[1] - (m[0] * m[1]).sqrt() < 3.0 * d / h
+    let (sum, rise) = (m[0] + m[1], 3.0 * d / h);
+    sum < rise || sum - (m[0] * m[1]).sqrt() < rise
 }
 
 #[cfg(test)]

@@ -28,6 +28,8 @@ const EVALUATIONS: usize = 60;
 /// Decimal logarithms of scaled penalties that cross-validation tries first, and the width to which it narrows them.
 const STRAIGHT: i32 = 2;
 const NARROW: f64 = 0.02;
+/// The gap at which scores are told: they are compared to four digits or so.
+const SCORE_GAP: f64 = 1e-7;
 
 /// Optima of one set of data.
 pub(super) struct Optima<'a> {
@@ -87,7 +89,7 @@ impl<'a> Optima<'a> {
         let task = &self.input.task;
         let layout = task.layout();
         let mut f = isotonic(&task.y, &task.w, task.bounds);
-        if layout.bent {
+        if self.input.rigid {
             // The data are constant, or the bounds leave no room.
             let level = f[0];
             f.fill(level);
@@ -123,9 +125,14 @@ impl<'a> Optima<'a> {
             // Bounds at both ends meet in the middle, where larger numbers would hide the rest.
             stiff[k] = stiff[k].min(HELD_VALUE);
         }
-        let twice = task.twice();
-        self.system.factor(&task.h, &models, &twice, &stiff);
-        let variances = self.system.variances(&task.h, &models);
+        self.trace(&models, &stiff)
+    }
+
+    /// The trace of the derivative of the values in the data.
+    fn trace(&mut self, models: &[Model], stiff: &[f64]) -> f64 {
+        let (h, twice) = (&self.input.task.h, self.input.task.twice());
+        self.system.factor(h, models, &twice, stiff);
+        let variances = self.system.variances(h, models);
         variances.iter().zip(&twice).map(|(v, w)| v * w).sum()
     }
 
@@ -134,14 +141,31 @@ impl<'a> Optima<'a> {
         self.unit * 10f64.powf(k)
     }
 
-    /// The generalised cross-validation score, `(Σ w(y − f)²/n)/(1 − freedom/n)²`.
-    pub(super) fn score(&mut self, k: f64) -> Result<f64, MonotoneError> {
-        let lambda = self.penalty(k);
-        let optimum = self.at(lambda)?;
-        let n = self.input.count as f64;
-        let left = 1.0 - self.freedom(lambda, &optimum) / n;
-        let score = (optimum.residual + self.input.within) / n / (left * left);
-        Ok(if left > 1e-9 { score } else { f64::INFINITY })
+    /// The generalised cross-validation score, `(Σ w(y − f)²/n)/(1 − freedom/n)²`, and the freedom: of the interior
+    /// point's answer, whose stiffness is that of the constraints, nearly. It need not be as near as an answer.
+    fn score(&mut self, k: f64) -> Result<[f64; 2], MonotoneError> {
+        let task = &self.input.task;
+        let lambda = self.clamped(self.penalty(k));
+        let state = match unconstrained(task, lambda, &mut self.system) {
+            Some(state) => state,
+            None => minimise(task, lambda, None, SCORE_GAP, &mut self.system, self.go_on)?,
+        };
+        let (mut f, n) = (Vec::new(), task.h.len());
+        task.values(state.first, &state.sizes, &mut f);
+        let models: Vec<Model> = (0..n).map(|i| task.model(lambda, i, &state.sizes)).collect();
+        let sizes = state.sizes.iter().zip(&state.multipliers);
+        let stiff: Vec<f64> = sizes.map(|(v, z)| if *z > 0.0 { z / v } else { 0.0 }).collect();
+        let freedom = self.trace(&models, &stiff);
+        let left = 1.0 - freedom / self.input.count as f64;
+        Ok([
+            if left > 1e-9 { self.scored(task.residual(&f), left) } else { f64::INFINITY },
+            freedom,
+        ])
+    }
+
+    /// The score of a residual with a share of the freedom left.
+    fn scored(&self, residual: f64, left: f64) -> f64 {
+        (residual + self.input.within) / self.input.count as f64 / (left * left)
     }
 
     /// The scaled penalty of the least score: the best power of ten, then a golden-section search around it.
@@ -150,13 +174,17 @@ impl<'a> Optima<'a> {
             return Ok(0.0);
         }
         let least = -4.0 * (self.input.x.len() as f64).log10() - 4.0;
+        // Smaller penalties leave no less than that of the isotonic regression, and no less freedom.
+        let least_residual = self.isotonic().residual;
         let mut best = (f64::INFINITY, f64::from(STRAIGHT));
         let mut k = f64::from(STRAIGHT);
         while k >= least {
-            let score = self.score(k)?;
+            let [score, freedom] = self.score(k)?;
             if score < best.0 {
                 best = (score, k);
-            } else if score > 4.0 * best.0 {
+            }
+            let left = 1.0 - freedom / self.input.count as f64;
+            if score == f64::INFINITY || self.scored(least_residual, left) > best.0 {
                 break;
             }
             k -= 1.0;
@@ -165,16 +193,16 @@ impl<'a> Optima<'a> {
         let (mut from, mut to) = (best.1 - 1.0, best.1 + 1.0);
         let inside = |from: f64, to: f64| [to - golden * (to - from), from + golden * (to - from)];
         let [mut a, mut b] = inside(from, to);
-        let (mut at_a, mut at_b) = (self.score(a)?, self.score(b)?);
+        let (mut at_a, mut at_b) = (self.score(a)?[0], self.score(b)?[0]);
         while to - from > NARROW {
             if at_a <= at_b {
                 (to, b, at_b) = (b, a, at_a);
                 a = inside(from, to)[0];
-                at_a = self.score(a)?;
+                at_a = self.score(a)?[0];
             } else {
                 (from, a, at_a) = (a, b, at_b);
                 b = inside(from, to)[1];
-                at_b = self.score(b)?;
+                at_b = self.score(b)?[0];
             }
         }
         let found = if at_a <= at_b { (at_a, a) } else { (at_b, b) };
