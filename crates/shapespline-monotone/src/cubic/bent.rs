@@ -76,7 +76,7 @@ impl Stretch<'_> {
         let c = self.floor.get(i).copied().unwrap_or(0.0);
         let over = |slope: f64| if slope - c <= ULPS * f64::EPSILON * c { 0.0 } else { slope - c };
         let slopes = [0, 1].map(|end| over(self.base(i + end) + m[end]));
-        let piece = Piece::new(slopes, slopes.map(f64::sqrt), self.d[i] - c * self.h[i], self.h[i]);
+        let piece = Piece::new(slopes, self.d[i] - c * self.h[i], self.h[i]);
         if piece.level { piece } else { Piece::cubic(self.beyond_secant(i, m), self.h[i]) }
     }
 

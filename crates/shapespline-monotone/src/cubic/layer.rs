@@ -55,7 +55,7 @@ impl Layer {
     pub(crate) fn piece(self, right: bool, m: [f64; 2], d: f64, h: f64) -> Piece {
         let far = m[usize::from(!right)];
         if self.is_level(far, d, h) {
-            return Piece::new(m, m.map(f64::sqrt), d, h);
+            return Piece::new(m, d, h);
         }
         let rest = 1.0 - self.share;
         let gradient = |m: f64| 2.0 * self.seconds(m, d, h).far / (h * h);

@@ -28,13 +28,15 @@ pub(crate) struct Piece {
 }
 
 impl Piece {
-    /// Of an interval with end slopes `m` (and their roots).
+    /// Of an interval with end slopes `m`.
     #[inline(always)]
-    pub(crate) fn new(m: [f64; 2], root: [f64; 2], d: f64, h: f64) -> Self {
-        let delta = d / h;
-        if m[0] + m[1] - root[0] * root[1] < 3.0 * delta {
+    pub(crate) fn new(m: [f64; 2], d: f64, h: f64) -> Self {
+        let (delta, sum) = (d / h, m[0] + m[1]);
+        // Most intervals are told without roots.
+        if sum < 3.0 * delta || sum - m[0].sqrt() * m[1].sqrt() < 3.0 * delta {
             Self::cubic([m[0] - delta, m[1] - delta], h)
         } else {
+            let root = [m[0].sqrt(), m[1].sqrt()];
             let cubes = [root[0] * m[0], root[1] * m[1]];
             let s = cubes[0] + cubes[1];
             // The quotient first: a square of s could overflow.
@@ -129,7 +131,7 @@ mod tests {
     use super::*;
 
     fn piece(m0: f64, m1: f64, d: f64, h: f64) -> Piece {
-        Piece::new([m0, m1], [m0.sqrt(), m1.sqrt()], d, h)
+        Piece::new([m0, m1], d, h)
     }
 
     /// Gradients and Hessians are the derivatives of the energies and of the gradients, in both forms.

@@ -244,7 +244,7 @@ impl Problem {
         }
         let c = self.floor.get(i).copied().unwrap_or(0.0);
         let m = [(m[i] - c).max(0.0), (m[i + 1] - c).max(0.0)];
-        Piece::new(m, [m[0].sqrt(), m[1].sqrt()], self.d[i] - c * self.h[i], self.h[i])
+        Piece::new(m, self.d[i] - c * self.h[i], self.h[i])
     }
 
     /// The least energy of some intervals in scaled units, and what each is above its lower bound at most.

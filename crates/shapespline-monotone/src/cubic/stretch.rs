@@ -133,11 +133,11 @@ impl<'a> Stretch<'a> {
             return self.asked(i, m);
         }
         if self.floor.is_empty() {
-            return Piece::new(m, [m[0].sqrt(), m[1].sqrt()], self.d[i], self.h[i]);
+            return Piece::new(m, self.d[i], self.h[i]);
         }
         let c = self.floor[i];
         let m = [(m[0] - c).max(0.0), (m[1] - c).max(0.0)];
-        Piece::new(m, [m[0].sqrt(), m[1].sqrt()], self.d[i] - c * self.h[i], self.h[i])
+        Piece::new(m, self.d[i] - c * self.h[i], self.h[i])
     }
 
     /// Slopes of least energy. `m` holds those of held ends, and with `warm` a start for the others.
