@@ -3,7 +3,7 @@
 //! The monotone C² cubic: of all monotone functions through the data the one with the least bending energy.
 
 use crate::MonotoneError;
-use crate::data::{Data, PowerOfTwo, Units, out_of_range};
+use crate::data::{Data, PowerOfTwo, Units, out_of_range, parts_mut};
 use crate::energy::Fairness;
 use crate::extrapolation::{Continuation, Extrapolation};
 use crate::interrupt::{GoOn, ask};
@@ -339,7 +339,7 @@ impl Task {
             energy: out(energy),
             limited: Vec::new(),
         };
-        gaps.iter_mut().for_each(|gap| *gap = out(*gap));
+        parts_mut(&mut gaps, |_, gaps| gaps.iter_mut().for_each(|gap| *gap = out(*gap)));
         let (level, lower_bound) = (pieces.level.clone(), out((least - gap).max(0.0)));
         let spline = MonotoneSpline::cubic(units, [x, y], pieces, extrapolate);
         // A second derivative beyond double precision: refuse rather than hand out infinities.

@@ -148,6 +148,36 @@ pub(crate) fn parts<T: Send>(n: usize, of: impl Fn(Range<usize>) -> T + Sync) ->
     }
 }
 
+/// Parts one after another, and room for some entries more, which are zero. Copied on all threads where they are many:
+/// most of the time goes into fresh memory.
+pub(crate) fn joined<T: Copy + Default + Send + Sync>(parts: &[&[T]], more: usize) -> Vec<T> {
+    let total: usize = parts.iter().map(|part| part.len()).sum();
+    let mut all = vec![T::default(); total + more];
+    let mut rest = &mut all[..];
+    let mut pairs = Vec::with_capacity(parts.len());
+    for part in parts {
+        let (own, behind) = rest.split_at_mut(part.len());
+        pairs.push((own, *part));
+        rest = behind;
+    }
+    let copy = |(own, part): (&mut [T], &[T])| own.copy_from_slice(part);
+    if total < 2 * PART {
+        pairs.into_iter().for_each(copy);
+    } else {
+        pairs.into_par_iter().for_each(copy);
+    }
+    all
+}
+
+/// Both results, on two threads where they are long.
+pub(crate) fn both<A: Send, B: Send>(
+    length: usize,
+    a: impl FnOnce() -> A + Send,
+    b: impl FnOnce() -> B + Send,
+) -> (A, B) {
+    if length < 2 * PART { (a(), b()) } else { rayon::join(a, b) }
+}
+
 /// `by` every part of the numbers (with its start), on all threads where there are many.
 pub(crate) fn parts_mut(values: &mut [f64], by: impl Fn(usize, &mut [f64]) + Sync) {
     if values.len() < 2 * PART {

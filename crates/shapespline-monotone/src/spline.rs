@@ -3,7 +3,7 @@
 //! The interpolant that all schemes make: data, slopes, and one evaluation record per piece.
 
 use crate::cubic::Pieces;
-use crate::data::{Units, first};
+use crate::data::{Units, both, first};
 use crate::extrapolation::Extrapolation;
 use crate::integrals::Lazy;
 use crate::inverse::Inverse;
@@ -158,7 +158,7 @@ impl MonotoneSpline {
         let records = record::records(x.len() - 1, tile);
         let own = nodes.len() < x.len();
         let points = own.then(|| {
-            let [x, y] = data.map(<[f64]>::to_vec);
+            let (x, y) = both(nodes.len(), || data[0].to_vec(), || data[1].to_vec());
             Box::new(Points { x, y, nodes })
         });
         let (kind, cached) = (Kind::Cubic { z }, Cached::default());

@@ -6,7 +6,7 @@ use super::layer::between;
 use super::piece::Level;
 use super::problem::{Layers, Problem, Slopes};
 use super::profile::{Profile, Profiles};
-use crate::data::{Units, parts};
+use crate::data::{Units, joined, parts};
 
 /// Pieces over the knots, as [`crate::MonotoneSpline`] takes them: slopes and second derivatives are signed and scaled.
 #[derive(Debug, Default)]
@@ -202,10 +202,12 @@ impl Pieces {
             (own, energy)
         });
         let (mut all, energy) = Self::joined(made);
-        all.nodes.push(all.x.len());
-        all.x.push(x[n]);
-        all.y.push(y[n]);
-        all.slope.push(slope(n));
+        let last = all.second.len();
+        all.nodes.push(last);
+        for (list, value) in [(&mut all.x, x[n]), (&mut all.y, y[n]), (&mut all.slope, slope(n))] {
+            list.resize(last + 1, 0.0);
+            list[last] = value;
+        }
         (all, energy)
     }
 
@@ -227,28 +229,25 @@ impl Pieces {
         if parts.len() == 1 {
             return parts.into_iter().next().unwrap_or_default();
         }
-        let count = |of: fn(&Self) -> usize| parts.iter().map(|(part, _)| of(part)).sum::<usize>();
-        let knots = count(|part| part.x.len()) + 1;
-        let mut all = Self {
-            x: Vec::with_capacity(knots),
-            y: Vec::with_capacity(knots),
-            slope: Vec::with_capacity(knots),
-            second: Vec::with_capacity(knots),
-            nodes: Vec::with_capacity(count(|part| part.nodes.len()) + 1),
-            level: Vec::new(),
+        // Room for the last point.
+        let list = |of: fn(&Self) -> &[f64]| {
+            joined(&parts.iter().map(|(part, _)| of(part)).collect::<Vec<_>>(), 1)
         };
-        let mut energy = 0.0;
-        for (part, own) in parts {
-            let start = all.x.len();
-            all.nodes.extend(part.nodes.iter().map(|k| start + k));
-            all.level.extend_from_slice(&part.level);
-            all.x.extend_from_slice(&part.x);
-            all.y.extend_from_slice(&part.y);
-            all.slope.extend_from_slice(&part.slope);
-            all.second.extend_from_slice(&part.second);
-            energy += own;
-        }
-        (all, energy)
+        let mut start = 0;
+        let nodes = parts.iter().flat_map(|(part, _)| {
+            let from = start;
+            start += part.x.len();
+            part.nodes.iter().map(move |k| from + k)
+        });
+        let all = Self {
+            nodes: nodes.collect(),
+            level: parts.iter().flat_map(|(part, _)| part.level.iter().copied()).collect(),
+            x: list(|part| &part.x),
+            y: list(|part| &part.y),
+            slope: list(|part| &part.slope),
+            second: joined(&parts.iter().map(|(part, _)| &part.second[..]).collect::<Vec<_>>(), 0),
+        };
+        (all, parts.iter().map(|(_, energy)| energy).sum())
     }
 
     /// A value between that of the last knot and that of the next point, which rounding can leave.

@@ -6,7 +6,7 @@ use super::layer::Layer;
 use super::piece::{Piece, least};
 use super::stretch::{Room, Steps, Stretch};
 use crate::MonotoneError;
-use crate::data::{Data, parts};
+use crate::data::{Data, both, joined, parts};
 use crate::energy::is_flat;
 use crate::interrupt::{GoOn, ask};
 use rayon::prelude::*;
@@ -72,23 +72,18 @@ impl Problem {
     pub(crate) fn new(data: &Data) -> Self {
         let n = data.len();
         let sign = |delta: &f64| if is_flat(*delta) { 0.0 } else { delta.signum() };
-        let sign: Vec<f64> = data.delta.iter().map(sign).collect();
         let rise = |(h, delta): (&f64, &f64)| if is_flat(*delta) { 0.0 } else { delta.abs() * h };
-        let d = data.h.iter().zip(&data.delta).map(rise).collect();
+        let (sign, (h, d)): (Vec<f64>, (Vec<f64>, Vec<f64>)) = both(
+            n,
+            || data.delta.iter().map(sign).collect(),
+            || (data.h.clone(), data.h.iter().zip(&data.delta).map(rise).collect()),
+        );
         let mut held = vec![false; n + 1];
         (held[0], held[n]) = (sign[0] == 0.0, sign[n - 1] == 0.0);
         for i in 1..n {
             held[i] = sign[i - 1] * sign[i] <= 0.0;
         }
-        Self {
-            h: data.h.clone(),
-            d,
-            sign,
-            floor: Vec::new(),
-            bend: Vec::new(),
-            held,
-            slope: vec![0.0; n + 1],
-        }
+        Self { h, d, sign, floor: Vec::new(), bend: Vec::new(), held, slope: vec![0.0; n + 1] }
     }
 
     /// Whether node i is a turn or the end of a flat.
@@ -138,16 +133,16 @@ impl Problem {
             return Ok(Slopes { m, fine, over: Vec::new(), solves, converged });
         }
         let parts: Vec<_> = (0..count).into_par_iter().map_init(Room::default, part).collect();
-        let (m, fine) = (Vec::with_capacity(nodes), Vec::new());
-        let mut all = Slopes { m, fine, over: Vec::new(), solves: 0, converged: true };
-        for part in parts {
-            let ((m, fine), steps) = part?;
-            all.m.extend_from_slice(&m);
-            all.fine.extend_from_slice(&fine);
-            all.solves = all.solves.max(steps.solves);
-            all.converged &= steps.converged;
-        }
-        Ok(all)
+        let parts = parts.into_iter().collect::<Result<Vec<_>, _>>()?;
+        let slopes: Vec<&[f64]> = parts.iter().map(|((m, _), _)| &m[..]).collect();
+        let fine: Vec<&[[f64; 2]]> = parts.iter().map(|((_, fine), _)| &fine[..]).collect();
+        Ok(Slopes {
+            m: joined(&slopes, 0),
+            fine: joined(&fine, 0),
+            over: Vec::new(),
+            solves: parts.iter().map(|(_, steps)| steps.solves).max().unwrap_or(0),
+            converged: parts.iter().all(|(_, steps)| steps.converged),
+        })
     }
 
     /// The slopes of some nodes.
@@ -270,11 +265,7 @@ impl Problem {
             (energy, gaps)
         });
         let energy = found.iter().map(|(energy, _)| energy).sum();
-        let mut gaps = Vec::with_capacity(own.len());
-        for (_, part) in found {
-            gaps.extend_from_slice(&part);
-        }
-        (energy, gaps)
+        (energy, joined(&found.iter().map(|(_, gaps)| &gaps[..]).collect::<Vec<_>>(), 0))
     }
 
     /// Of interval i, from the pieces before it, on it and after it.
