@@ -11,6 +11,7 @@
 //! H. P. Moreton, C. H. Séquin, *Functional optimization for fair surface design*, Computer Graphics 26
 //! (1992) 167–176, doi:10.1145/133994.134035 (the variation of curvature).
 
+mod extrema;
 mod largest;
 mod piece;
 
@@ -20,7 +21,8 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use crate::{Dimension, PiecewiseBezier, vector::power_of_two};
-use piece::{End, Extrema, Piece};
+use extrema::Extrema;
+use piece::{End, Piece};
 
 /// Directions that differ by less than this angle, in radians, meet smoothly.
 const SMOOTH: f64 = 1e-6;

@@ -5,15 +5,13 @@
 use glam::{DVec3, DVec4};
 
 use crate::{
+    fairness::extrema::Extrema,
     polynomial::{Coefficient, Polynomial, Sign},
     quadrature::integrate,
 };
 
 /// Accuracy of the integrals, relative to the contribution of a part between extrema.
 const ACCURACY: f64 = 1e-11;
-
-/// Deepest subdivision in the search for extrema of curvature.
-const DEPTH: u32 = 40;
 
 /// Position and derivatives of one Bézier piece in its local parameter `t ∈ [0, 1]`.
 ///
@@ -40,16 +38,6 @@ pub(crate) struct End {
     pub(crate) curvature: DVec3,
     /// Bound of what rounding did to the curvature.
     pub(crate) error: f64,
-}
-
-/// The turning points of curvature inside a piece.
-#[derive(Debug, Default)]
-pub(crate) struct Extrema {
-    /// Where curvature (in the plane: signed curvature) stops to rise or to fall.
-    pub(crate) at: Vec<f64>,
-    /// Whether it rises, before the first, between, and after the last of them. Empty where rounding
-    /// hides whether it changes at all.
-    pub(crate) rising: Vec<bool>,
 }
 
 impl Piece {
@@ -101,36 +89,12 @@ impl Piece {
         }
     }
 
-    /// Where curvature turns from rising to falling or back: sign changes of a polynomial, isolated by
-    /// Bernstein subdivision. In space that of `d(κ²)/dt`, in the plane that of the signed curvature.
+    /// Where curvature turns from rising to falling or back.
     pub(crate) fn extrema(&self) -> Extrema {
         if self.is_straight() {
             return Extrema::default();
         }
-        // κ = f w²/S^{3/2} with f = (V×V')_z, or κ² = f w⁴/S³ with f = ‖V×V'‖²; c is 1 or 2.
-        let (f, c) = if self.planar {
-            (self.turn.map(1.0, |v| v.z), 1.0)
-        } else {
-            (self.turn.product(&self.turn, DVec3::dot), 2.0)
-        };
-        let multiply = |p: f64, q: f64| p * q;
-        let speed = self.speed_squared();
-        let (rise, slope) = (f.derivative(), speed.derivative());
-        let growth = match &self.weight {
-            // f' S − (3c/2) f S'
-            None => rise.product(&speed, multiply).plus(&f.product(&slope, multiply), -1.5 * c),
-            // (f' w + 2c f w') S − (3c/2) f w S'
-            Some(weight) => {
-                let fw = f.product(weight, multiply);
-                let change = rise
-                    .product(weight, multiply)
-                    .plus(&f.product(&weight.derivative(), multiply), 2.0 * c);
-                change.product(&speed, multiply).plus(&fw.product(&slope, multiply), -1.5 * c)
-            }
-        };
-        let mut found = Extrema::default();
-        sign_changes(&growth, [0.0, 1.0], DEPTH, &mut found);
-        found
+        Extrema::of(self.velocity.clone(), self.weight.clone(), self.planar)
     }
 
     /// Derivatives of order 1 to 3 with respect to `t`.
@@ -196,67 +160,9 @@ impl Piece {
     }
 }
 
-/// Appends the sign changes of a polynomial on a part of its interval, each located to rounding.
-fn sign_changes(p: &Polynomial<f64>, [from, to]: [f64; 2], depth: u32, found: &mut Extrema) {
-    let error = p.error();
-    let clear = || p.coefficients().iter().filter(|c| c.abs() > error).map(|&c| c > 0.0);
-    let changes = clear().zip(clear().skip(1)).filter(|(a, b)| a != b).count();
-    let [first, last] = p.ends();
-    let certain = first.abs() > error && last.abs() > error;
-    let middle = 0.5 * (from + to);
-    match changes {
-        0 => {
-            if let Some(sign) = clear().next() {
-                found.push(from, sign);
-            }
-        }
-        1 if certain => {
-            found.push(from, first > 0.0);
-            found.push(from + (to - from) * root(p), last > 0.0);
-        }
-        _ if depth == 0 => {
-            for value in [first, last].into_iter().filter(|value| value.abs() > error) {
-                found.push(middle, value > 0.0);
-            }
-        }
-        _ => {
-            let [left, right] = p.halves();
-            sign_changes(&left, [from, middle], depth - 1, found);
-            sign_changes(&right, [middle, to], depth - 1, found);
-        }
-    }
-}
-
-impl Extrema {
-    /// From `at` on curvature rises, or falls.
-    fn push(&mut self, at: f64, rising: bool) {
-        if self.rising.last() == Some(&rising) {
-            return;
-        }
-        if !self.rising.is_empty() {
-            self.at.push(at);
-        }
-        self.rising.push(rising);
-    }
-}
-
-/// The root of a polynomial with opposite signs at the ends and one sign change of its coefficients,
-/// by bisection.
-fn root(p: &Polynomial<f64>) -> f64 {
-    let rising = p.ends()[1] > 0.0;
-    let [mut from, mut to] = [0.0, 1.0];
-    loop {
-        let middle = 0.5 * (from + to);
-        if !(from < middle && middle < to) || to - from < 1e-15 {
-            return middle;
-        }
-        if (value(p.coefficients(), middle) > 0.0) == rising { to = middle } else { from = middle }
-    }
-}
-
 /// The value of a polynomial in Bernstein form at `t ∈ [0, 1]`, by Horner's rule in `t` with the powers
 /// of `1 − t` taken along: no memory and O(degree), where de Casteljau's algorithm takes its square.
-fn value<T: Coefficient>(coefficients: &[T], t: f64) -> T {
+pub(crate) fn value<T: Coefficient>(coefficients: &[T], t: f64) -> T {
     let n = coefficients.len() - 1;
     let (s, mut weight) = (1.0 - t, 1.0);
     let mut sum = coefficients[0];

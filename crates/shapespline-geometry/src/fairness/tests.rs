@@ -109,6 +109,47 @@ fn extrema_are_those_that_samples_show() {
     }
 }
 
+/// Where a curve nearly stops it turns within a small part of its parameter, and rounding of the whole hides how: found
+/// on a fair curve between two reversals, whose largest curvature was said to be 47, not 2·10⁸.
+#[test]
+fn extrema_are_seen_where_a_curve_nearly_stops() {
+    use rand::{Rng, SeedableRng, rngs::StdRng};
+    let mut random = StdRng::seed_from_u64(11);
+    for case in 0..120 {
+        let dimension = if case % 2 == 0 { Dimension::Two } else { Dimension::Three };
+        let mut vector = |size: f64| {
+            let mut next = || random.random_range(-size..size);
+            DVec3::new(next(), next(), if dimension == Dimension::Two { 0.0 } else { next() })
+        };
+        let slow = 10f64.powi(-(case % 6) - 1);
+        let (a, b, c) = (vector(slow), vector(slow), vector(1.0));
+        // At the start, at the end, or inside, where γ' = 3 (a (1 − 2t)² + c t (1 − t) 4).
+        let legs = match case % 3 {
+            0 => [a, b, c],
+            1 => [c, b, a],
+            _ => [c, (a * 3.0 - c) * 0.5, c],
+        };
+        let slowest = [0.0, 1.0, 0.5][case as usize % 3];
+        let points = [DVec3::ZERO, legs[0], legs[0] + legs[1], legs[0] + legs[1] + legs[2]];
+        let f = fairness(&curve(&[&points.map(|p| p.to_array())], dimension));
+        let speed = |t: f64| {
+            let s = 1.0 - t;
+            (legs[0] * (s * s) + legs[1] * (2.0 * s * t) + legs[2] * (t * t)) * 3.0
+        };
+        let change = |t: f64| ((legs[1] - legs[0]) * (1.0 - t) + (legs[2] - legs[1]) * t) * 6.0;
+        let curvature = |t: f64| speed(t).cross(change(t)).length() / speed(t).length().powi(3);
+        let away = (0..40_000).map(|k| 10f64.powf(-f64::from(k) * 3e-4));
+        let samples = away.flat_map(|d| [slowest - d, slowest + d]).chain([slowest]);
+        let within = samples.filter(|t| (0.0..=1.0).contains(t));
+        let largest = within.map(curvature).fold(0.0, f64::max);
+        assert!(
+            f.cusps.is_empty() && f.max_curvature >= largest * (1.0 - 1e-6),
+            "{case} {largest} {legs:?}: {f:?}"
+        );
+        assert!(f.max_curvature <= largest * (1.0 + 1e-2), "{case}: {} {largest}", f.max_curvature);
+    }
+}
+
 /// Found on straight runs: the rounding of a skew line was integrated for a second per segment.
 #[test]
 fn a_line_has_no_energy_wherever_it_lies() {
