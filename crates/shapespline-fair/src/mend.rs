@@ -101,7 +101,8 @@ pub(crate) fn mend(demands: &Demands<'_>, chain: &mut Chain, control: &mut Contr
     }
 }
 
-/// Restarts around some segments of a feasible chain, and keeps what is better than before.
+/// Restarts around some segments of a feasible chain, and keeps what is better than before. Those that nearly stop all
+/// the same are restarted with a node more on each side.
 pub(crate) fn refresh(
     demands: &Demands<'_>,
     chain: &mut Chain,
@@ -109,7 +110,9 @@ pub(crate) fn refresh(
     control: &mut Control<'_>,
 ) {
     for pad in 0..2 {
-        for nodes in clusters(chain, segments, pad) {
+        let segments: Vec<usize> =
+            segments.iter().copied().filter(|&k| pad == 0 || chain.nearly_stops(k)).collect();
+        for nodes in clusters(chain, &segments, pad) {
             let (value, part) =
                 settle(demands, chain, &part(chain, nodes.clone()), &THOROUGH, control);
             let best = best_restart(demands, chain, &nodes, &THOROUGH, control);

@@ -261,7 +261,7 @@ fn walks_keep_their_shape_with_little_energy() {
     for (dimension, count, median_at_most) in
         [(Dimension::Three, 1000, 0.5), (Dimension::Two, 500, 0.2)]
     {
-        let (mut ratios, mut bent, mut above, mut open) = (Vec::new(), 0, 0, 0);
+        let (mut ratios, mut bent, mut above, mut open) = (Vec::new(), 0, Vec::new(), 0);
         for seed in 0..scaled(count) {
             let polygon = walk(seed, 1.0, dimension);
             let fit = fit(polygon.clone(), Energy::Parametric);
@@ -278,17 +278,19 @@ fn walks_keep_their_shape_with_little_energy() {
                 let [[e, _], [e0, _]] = [&fit.curve, &plain(polygon.clone())].map(measures);
                 ratios.push(e / e0);
                 bent += usize::from(e > 1.1 * e0);
-                above += usize::from(e > 1.1 * with_tension(polygon));
+                if e > 1.1 * with_tension(polygon) {
+                    above.push(seed);
+                }
             }
         }
         ratios.sort_by(f64::total_cmp);
         let median = ratios[ratios.len() / 2];
         eprintln!(
-            "{dimension:?}: median {median}, {bent} above the cubic, {above} above tension, {open} open"
+            "{dimension:?}: median {median}, {bent} above the cubic, {above:?} above tension, {open} open"
         );
         assert!(median <= median_at_most, "{dimension:?}: {median}");
         assert!(bent * 50 <= ratios.len(), "{dimension:?}: {bent} of {}", ratios.len());
-        assert_eq!(above, 0, "{dimension:?}: above the tension cubic");
+        assert!(above.is_empty(), "{dimension:?}: above the tension cubic: {above:?}");
         // Where the binormals next to a turn by nearly 180° are nearly perpendicular, rounding may hide a sign.
         assert!(open * 400 <= count, "{dimension:?}: {open} undecided");
     }
