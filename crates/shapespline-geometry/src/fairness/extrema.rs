@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Where the curvature of a piece rises and where it falls.
 //!
 //! Curvature grows where a polynomial is positive: its sign changes are isolated by Bernstein subdivision. The bound
