@@ -19,7 +19,8 @@ from shape_by_sampling import of_curve, shape_by_sampling
 POLYGONS = 60
 
 
-#: Turns of 1e-9, chords that differ by 1e6: a fair curve may fail there, and says so (limits.md).
+#: Turns of 1e-9, chords that differ by 1e6: rounding may hide a sign of a fair curve there, which its check says; and
+#: where end tangents lead across such data none may be found, which is an error (limits.md).
 HARD = ("near collinear", "planar near collinear", "uneven chords")
 
 
@@ -81,7 +82,7 @@ def test_generated_polygons(curve_class, family, end):
         try:
             curve = cases.preserving(curve_class)(points, boundary=boundary)
         except ss.ConvergenceError:
-            if not hard:
+            if not (hard and end == "tangents"):
                 raise
             continue
         found = of_curve(curve)
