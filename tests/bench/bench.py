@@ -20,7 +20,12 @@ from pathlib import Path
 import numpy as np
 import scipy
 from measuring import Line, at_most, best, faster, within
-from monotone import monotone_building, monotone_evaluating, monotone_small
+from monotone import (
+    monotone_building,
+    monotone_convex_and_smooth,
+    monotone_evaluating,
+    monotone_small,
+)
 from scipy.interpolate import CubicSpline, make_interp_spline
 
 import shapespline as ss
@@ -313,6 +318,7 @@ def main() -> int:
         monotone_building(largest),
         monotone_evaluating(sizes, largest),
         monotone_small(),
+        monotone_convex_and_smooth(100_000),
         overhead(),
         importing(),
         memory(largest),

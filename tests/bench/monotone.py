@@ -94,3 +94,26 @@ def monotone_small() -> Iterator[Line]:
     yield faster(f"{what}, cubic", cubic, pchip, 30.0)
     yield faster(f"{what}, Fritsch–Butland slopes", paper, pchip, 50.0)
     yield faster(f"{what}, optimal slopes", optimal, pchip, 15.0)
+
+
+def monotone_convex_and_smooth(count: int) -> Iterator[Line]:
+    """Measure convex fits, and smoothing with its constraint active, idle, and convex as well."""
+    rng = np.random.default_rng(1)
+    x, y = rising(rng, 1000), rising(rng, 1000)
+    (convex,) = best(lambda: ss.MonotoneCubic(x, y, convex="data"))
+    yield within('one cubic, convex="data", N = 1000', convex, 20e-3)
+    x = np.sort(rng.uniform(0, 10, count))
+    y = 1 / (1 + np.exp(-2 * (x - 5))) + 0.1 * rng.normal(size=count)
+    line, signs = x + 0.01 * rng.normal(size=count), np.where(x[1:] < 5, 1, -1)
+    active, idle, shaped = best(
+        lambda: ss.smooth_monotone(x, y, penalty=0.1),
+        lambda: ss.smooth_monotone(x, line, penalty=10.0),
+        lambda: ss.smooth_monotone(x, y, penalty=0.1, convex=signs),
+    )
+    share = count / 100_000
+    yield within(f"smoothing, N = {count:g}", active, 1.0 * share)
+    yield within(f"smoothing, N = {count:g}, constraint idle", idle, 1.0 * share)
+    yield within(f"smoothing, N = {count:g}, convex and concave", shaped, 5.0 * share)
+    few = slice(None, None, count // 10_000)
+    (chosen,) = best(lambda: ss.smooth_monotone(x[few], y[few]))
+    yield within("smoothing, N = 10,000, penalty by cross-validation", chosen, 2.0)

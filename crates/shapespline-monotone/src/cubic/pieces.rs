@@ -8,6 +8,10 @@ use super::problem::{Layers, Problem, Slopes};
 use super::profile::{Profile, Profiles};
 use crate::data::{Units, joined, parts};
 
+/// Ulps of the places up to which a part is short; relative second derivatives that are nothing.
+const SHORT: f64 = 4.0;
+const NOTHING: f64 = 1e-13;
+
 /// Pieces over the knots, as [`crate::MonotoneSpline`] takes them: slopes and second derivatives are signed and scaled.
 #[derive(Debug, Default)]
 pub(crate) struct Pieces {
@@ -287,6 +291,9 @@ impl Pieces {
             second = knot.second;
         }
         self.second.push([sign * second, sign * profile.ends[1]]);
+        if !profile.knots().is_empty() {
+            self.straighten_short(units, sign, [x[1], y[1]]);
+        }
     }
 
     /// The point before an interval and the inner knots.
@@ -317,6 +324,35 @@ impl Pieces {
             from = k + 1;
         }
         self.second.push(interval.second[from].map(|z| sign * z));
+        if interval.knots > 0 {
+            self.straighten_short(units, sign, [x[1], y[1]]);
+        }
+    }
+
+    /// On parts of the last interval, which ends at (x, y), that are some ulps long, rounding of the values can be larger
+    /// than all that second derivatives make of them, and turn slopes the wrong way: such parts are straight, if those are
+    /// nothing beside those of the other parts.
+    fn straighten_short(&mut self, units: Units, sign: f64, end: [f64; 2]) {
+        let start = self.nodes[self.nodes.len() - 1];
+        let width = end[0] - self.x[start];
+        let size = |z: &[f64; 2]| z[0].abs().max(z[1].abs());
+        let largest = self.second[start..].iter().map(size).fold(0.0, f64::max);
+        for k in start..self.second.len() {
+            let (x0, y0) = (self.x[k], self.y[k]);
+            let x1 = self.x.get(k + 1).copied().unwrap_or(end[0]);
+            let y1 = self.y.get(k + 1).copied().unwrap_or(end[1]);
+            let h = x1 - x0;
+            let long = h > SHORT * f64::EPSILON * width.max(x0.abs()).max(x1.abs());
+            if long || size(&self.second[k]) > NOTHING * largest {
+                continue;
+            }
+            let [z0, z1] = self.second[k].map(|z| units.derivative_out(z, 2));
+            let secant = (y1 - y0) / h;
+            let slopes = [secant - h * (2.0 * z0 + z1) / 6.0, secant + h * (z0 + 2.0 * z1) / 6.0];
+            if slopes.iter().any(|slope| sign * slope < 0.0) {
+                self.second[k] = [0.0; 2];
+            }
+        }
     }
 }
 

@@ -229,8 +229,11 @@ impl ConvexOption {
         let mut own = y.shape().to_vec();
         own[axis] = m;
         if *shape != own {
-            let rule =
-                format!("have one sign per interval: shape {} or {}", tuple(&[m]), tuple(&own));
+            let one = tuple(&[m]);
+            let rule = match tuple(&own) {
+                all if all == one => format!("have one sign per interval: shape {one}"),
+                all => format!("have one sign per interval: shape {one} or {all}"),
+            };
             return Err(must("convex", &[], rule, &shape[..]));
         }
         let inner: usize = own[axis + 1..].iter().product();
