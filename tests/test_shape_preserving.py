@@ -19,8 +19,8 @@ from shape_by_sampling import of_curve, shape_by_sampling
 POLYGONS = 60
 
 
-#: Turns of 1e-9, chords that differ by 1e6: rounding may hide a sign of a fair curve there, which its
-#: check says; and where end tangents lead across such data none may be found (limits.md).
+#: Turns of 1e-9, chords that differ by 1e6: rounding may hide a sign of a fair curve there, which
+#: its check says; and where end tangents lead across such data none may be found (limits.md).
 HARD = ("near collinear", "planar near collinear", "uneven chords")
 
 
