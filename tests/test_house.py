@@ -247,3 +247,11 @@ def test_the_smoke_test_of_packages_passes():
     assert subprocess.run(command, check=True, capture_output=True).stdout.startswith(
         b"shapespline"
     )
+
+
+def test_every_test_file_is_explained():
+    folder = ROOT / "tests"
+    python = {path.name for path in folder.glob("*.py")} - {"conftest.py"}
+    rust = {f"rust/tests/{path.name}" for path in (folder / "rust" / "tests").glob("*.rs")}
+    named = set(re.findall(r"`((?:rust/tests/)?\w+\.(?:py|rs))`", read("tests/README.md")))
+    assert named == python | rust
