@@ -4,7 +4,7 @@
 
 use crate::{
     RightHandSide, SolveError,
-    error::{check_length, usable},
+    error::{check_length, checked_pivot},
     solve_tridiagonal,
 };
 
@@ -32,7 +32,7 @@ pub fn solve_cyclic<T: RightHandSide>(
         0 => return Ok(()),
         1 => {
             // Both neighbours of the only unknown are itself.
-            right[0] = right[0] / usable(0, lower[0] + diagonal[0] + upper[0])?;
+            right[0] = right[0] / checked_pivot(0, lower[0] + diagonal[0] + upper[0])?;
             return Ok(());
         }
         _ => {}
@@ -46,7 +46,8 @@ pub fn solve_cyclic<T: RightHandSide>(
     solve_tridiagonal(&lower[..m], &mut diagonal[..m], &upper[..m], &mut right[..m])?;
     let (from_first, from_last) = (upper[m], lower[m]);
     let pivot = diagonal[m] - from_first * column[0] - from_last * column[m - 1];
-    let last = (right[m] - right[0] * from_first - right[m - 1] * from_last) / usable(m, pivot)?;
+    let last =
+        (right[m] - right[0] * from_first - right[m - 1] * from_last) / checked_pivot(m, pivot)?;
     right[m] = last;
     for (x, c) in right[..m].iter_mut().zip(&column) {
         *x = *x - last * *c;

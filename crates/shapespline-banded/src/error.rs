@@ -28,7 +28,7 @@ pub enum SolveError {
 
 /// The pivot, if one can divide by it.
 #[inline]
-pub(crate) fn usable(row: usize, pivot: f64) -> Result<f64, SolveError> {
+pub(crate) fn checked_pivot(row: usize, pivot: f64) -> Result<f64, SolveError> {
     let size = pivot.abs();
     if size > 0.0 && size < f64::INFINITY {
         Ok(pivot)

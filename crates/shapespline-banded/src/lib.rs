@@ -5,7 +5,7 @@
 //!
 //! All solvers are O(n) and without pivoting (the systems of interpolating splines are strictly
 //! diagonally dominant or positive definite): [`solve_tridiagonal`] and [`solve_cyclic`] work in place
-//! on arrays, [`Resolvable`] keeps what it needs to solve again only where rows changed, a [`Place`] of
+//! on arrays, [`UpdatableSolver`] keeps what it needs to solve again only where rows changed, a [`LocalSystem`] of
 //! it solves a few rows with other coefficients, [`block_tridiagonal`] takes 2×2 blocks,
 //! [`BlockCholesky`] blocks of any size, open or cyclic, and [`box_qp`] minimises a quadratic form between
 //! bounds.
@@ -25,21 +25,21 @@ mod block_cholesky;
 pub mod block_tridiagonal;
 pub mod box_qp;
 mod cyclic;
+mod elimination;
 mod error;
-mod place;
-mod resolvable;
+mod local_system;
 mod rows;
-mod sweep;
 mod tridiagonal;
+mod updatable;
 
 pub use block_cholesky::{Block, BlockCholesky, NotPositiveDefinite};
 pub use cyclic::solve_cyclic;
 pub use error::SolveError;
 pub use glam::DVec3;
-pub use place::Place;
-pub use resolvable::{Resolvable, solve_once};
+pub use local_system::LocalSystem;
 pub use rows::{Row, Rows};
 pub use tridiagonal::{RightHandSide, solve_tridiagonal};
+pub use updatable::{UpdatableSolver, solve_once};
 
 /// The examples of the README are run as tests.
 #[cfg(doctest)]

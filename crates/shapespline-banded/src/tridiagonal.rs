@@ -6,7 +6,7 @@ use std::ops::{Div, Mul, Sub};
 
 use crate::{
     SolveError,
-    error::{check_length, usable},
+    error::{check_length, checked_pivot},
 };
 
 /// One row of the right-hand side: a number, or several right-hand sides together as a vector.
@@ -44,7 +44,7 @@ pub fn solve_tridiagonal<T: RightHandSide>(
             pivot -= lower[i] * diagonal[i - 1];
             right[i] = right[i] - right[i - 1] * lower[i];
         }
-        let pivot = usable(i, pivot)?;
+        let pivot = checked_pivot(i, pivot)?;
         right[i] = right[i] / pivot;
         diagonal[i] = upper[i] / pivot;
     }

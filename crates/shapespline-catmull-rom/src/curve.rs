@@ -8,7 +8,8 @@ use rayon::prelude::*;
 use shapespline_criteria::{Criteria, ShapeReport, Tolerances};
 use shapespline_geometry::{Boundary, DVec3, DataPolygon, InputError, PiecewiseCubic};
 use shapespline_search::{
-    Fit, FitError, Interpolant, Outcome, SearchOptions, Step, Tension, per_point, search_and_report,
+    Fit, FitError, Interpolant, Outcome, SearchOptions, Step, Tension, repeat_first_if_closed,
+    search_and_report,
 };
 
 use crate::{
@@ -201,7 +202,7 @@ impl CatmullRom {
         continuity: Continuity,
     ) -> Result<Self, FitError> {
         let boundary = polygon.boundary();
-        let tension = per_point(tension, polygon.is_closed());
+        let tension = repeat_first_if_closed(tension, polygon.is_closed());
         let curve = if checked {
             PiecewiseCubic::through_checked(polygon, legs)
         } else {

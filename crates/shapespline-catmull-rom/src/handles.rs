@@ -6,7 +6,7 @@ use std::{convert::Infallible, ops::Range};
 
 use rayon::prelude::*;
 use shapespline_geometry::{DVec3, DataPolygon};
-use shapespline_search::{TensionFamily, velocity_weight};
+use shapespline_search::{TensionFamily, tension_unit};
 
 use crate::tangents::tangent;
 
@@ -152,7 +152,7 @@ impl TensionFamily for Handles<'_> {
         Ok(())
     }
 
-    fn solve_again(&mut self) -> Result<(), Infallible> {
+    fn solve(&mut self) -> Result<(), Infallible> {
         Ok(())
     }
 
@@ -164,7 +164,7 @@ impl TensionFamily for Handles<'_> {
     }
 
     /// What the closed forms took away counts as tension.
-    fn weight(&self, node: usize) -> f64 {
-        self.factors[node] * velocity_weight(self.polygon, node)
+    fn tension_unit(&self, node: usize) -> f64 {
+        self.factors[node] * tension_unit(self.polygon, node)
     }
 }

@@ -8,8 +8,8 @@ use std::ops::ControlFlow;
 use shapespline_geometry::InputError;
 use shapespline_geometry::{Boundary, DVec3, DataPolygon, PiecewiseCubic};
 use shapespline_search::{
-    Fit, FitError, Found, Interpolant, SearchOptions, SolvedFamily, Step, Tension,
-    or_of_all_criteria, per_point, search_and_report, solve_legs,
+    Fit, FitError, FittedLegs, Interpolant, SearchOptions, SolvedFamily, Step, Tension,
+    or_of_all_criteria, repeat_first_if_closed, search_and_report, solve_legs,
 };
 
 use crate::system::NuSystem;
@@ -92,7 +92,7 @@ impl NuSpline {
         let tension = vec![0.0; polygon.nodes()];
         let mut family = SolvedFamily::new(NuSystem { polygon: &polygon, tension })?;
         let found = search_and_report(&mut family, &polygon, options, monitor)?;
-        let (Found { legs, outcome, report }, tension) = (found, family.into_system().tension);
+        let (FittedLegs { legs, outcome, report }, tension) = (found, family.into_system().tension);
         let curve = Self::assemble(polygon, legs, tension)?;
         Ok(Fit { curve, outcome, report })
     }
@@ -103,7 +103,7 @@ impl NuSpline {
         tension: Vec<f64>,
     ) -> Result<Self, FitError> {
         let boundary = polygon.boundary();
-        let tension = per_point(tension, polygon.is_closed());
+        let tension = repeat_first_if_closed(tension, polygon.is_closed());
         Ok(Self { curve: PiecewiseCubic::through(polygon, legs)?, tension, boundary })
     }
 }

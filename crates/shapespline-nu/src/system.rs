@@ -95,7 +95,7 @@ impl Rows for NuSystem<'_> {
 }
 
 impl TensionSystem for NuSystem<'_> {
-    const SCALES_LEGS: bool = false;
+    const TENSION_SCALES_LEGS: bool = false;
 
     fn polygon(&self) -> &DataPolygon {
         self.polygon
@@ -109,13 +109,13 @@ impl TensionSystem for NuSystem<'_> {
         self.tension[node] = tension;
     }
 
-    fn rows_of(&self, node: usize, rows: &mut Vec<usize>) {
+    fn dependent_rows(&self, node: usize, rows: &mut Vec<usize>) {
         rows.push(node);
     }
 
     /// Tension changes nothing but the diagonal.
     #[inline]
-    fn renew(&self, i: usize, row: &mut Row) {
+    fn refresh_row(&self, i: usize, row: &mut Row) {
         if !self.is_cyclic() && (i == 0 || i == self.polygon.segments()) {
             *row = self.row(i);
         } else {
@@ -154,9 +154,9 @@ mod tests {
             {
                 let mut rows = Vec::new();
                 system.set_tension(node, tension);
-                system.rows_of(node, &mut rows);
+                system.dependent_rows(node, &mut rows);
                 for i in rows {
-                    system.renew(i, &mut kept[i]);
+                    system.refresh_row(i, &mut kept[i]);
                 }
                 // Also the rows that were not named.
                 for (i, kept) in kept.iter().enumerate() {

@@ -20,9 +20,9 @@ use shapespline_geometry::{DVec3, DataPolygon};
 /// 2. **Say how tension makes tangents.** If the tangents solve a tridiagonal system, write its row
 ///    `i`, divided so that it has no unit and is strictly diagonally dominant, as
 ///    [`shapespline_banded::Rows`], and implement [`crate::TensionSystem`]; [`crate::SolvedFamily`]
-///    is then the family (`NuSystem` and `MannisSystem` are some 100 lines each). If a tangent depends on
+///    is then the family (`NuSystem` and `ManniSystem` are some 100 lines each). If a tangent depends on
 ///    its neighbours only, implement this trait itself (`Handles` of Catmull–Rom).
-/// 3. **Say where pulls are equal** ([`TensionFamily::weight`]) if equal tension does not already
+/// 3. **Say where pulls are equal** ([`TensionFamily::tension_unit`]) if equal tension does not already
 ///    make the legs of neighbouring nodes alike.
 /// 4. **The curve**: a struct with a [`shapespline_geometry::Curve`], the tension and the boundary
 ///    that implements [`crate::Interpolant`]. `PiecewiseCubic::through(polygon, legs)` is the curve
@@ -62,7 +62,7 @@ pub trait TensionFamily: Sync {
     /// that is not much cheaper than to set it.
     ///
     /// A search that does without is as good, and slower.
-    fn legs_under(
+    fn trial_legs(
         &mut self,
         _changes: &[(usize, f64)],
         _segments: Range<usize>,
@@ -75,11 +75,10 @@ pub trait TensionFamily: Sync {
     ///
     /// # Errors
     /// A system that cannot be solved.
-    fn solve_again(&mut self) -> Result<(), Self::Error>;
+    fn solve(&mut self) -> Result<(), Self::Error>;
 
-    /// Whether [`TensionFamily::solve_again`] would find what there is: where all segments have been
-    /// touched and checked since, nothing is left to verify.
-    fn all_is_solved(&self) -> bool {
+    /// True if the current tangents come from a full solve, so that no final verification is needed.
+    fn is_fully_solved(&self) -> bool {
         false
     }
 
@@ -88,20 +87,20 @@ pub trait TensionFamily: Sync {
 
     /// Tension in units in which equal pulls at the two nodes of an inflecting coplanar segment put
     /// its inflection where [`shapespline_criteria::separation`] says, in the limit: there the rule
-    /// (5.65) of paper 001 keeps `tension / weight` equal. One for ν-splines, for which (5.9) was
+    /// (5.65) of paper 001 keeps `tension / unit` equal. One for ν-splines, for which (5.9) was
     /// derived.
-    fn weight(&self, _node: usize) -> f64 {
+    fn tension_unit(&self, _node: usize) -> f64 {
         1.0
     }
 }
 
-/// [`TensionFamily::weight`] of a family whose tangents are, in the limit, `1/(1 + tension)` times the
+/// [`TensionFamily::tension_unit`] of a family whose tangents are, in the limit, `1/(1 + tension)` times the
 /// velocity `w L_{i−1}/h_{i−1} + (1−w) L_i/h_i`, `w = h_i/(h_{i−1} + h_i)`.
 ///
 /// Those of the ν-spline are `6/(ν_i √(w(1−w)))` times it, and at an end with a given tangent `1/ν`
-/// times that: the legs agree where `1 + tension` is this weight times a common `ν/12`.
+/// times that: the legs agree where `1 + tension` is this unit times a common `ν/12`.
 #[must_use]
-pub fn velocity_weight(polygon: &DataPolygon, node: usize) -> f64 {
+pub fn tension_unit(polygon: &DataPolygon, node: usize) -> f64 {
     let n = polygon.segments();
     if (node == 0 || node == n) && !polygon.is_closed() {
         return if polygon.tangents()[usize::from(node > 0)].is_some() { 12.0 } else { 2.0 };

@@ -6,7 +6,7 @@
 use shapespline_criteria::Faults;
 use shapespline_geometry::DataPolygon;
 
-use crate::pattern::{Pattern, Ring};
+use crate::pattern::{Ring, TensionPattern};
 
 /// Rounds of raising before fronts are watched: most searches end sooner.
 const FIRST_ROUND: usize = 12;
@@ -63,7 +63,7 @@ impl Front {
     /// Pairs of nodes: one that was raised at the last place, and the one in its stead here or ahead.
     pub(crate) fn nodes(self, polygon: &DataPolygon) -> impl Iterator<Item = [usize; 2]> {
         let ring = Ring::of(polygon, polygon.nodes());
-        let pattern = Pattern::of(self.faults);
+        let pattern = TensionPattern::of(self.faults);
         (0..self.repeats).flat_map(move |k| {
             pattern.offsets().filter_map(move |offset| {
                 let last = ring.moved(self.segment, offset - self.way)?;

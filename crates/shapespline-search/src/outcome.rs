@@ -88,7 +88,7 @@ impl Outcome {
 
 /// What a search leaves of a curve that is still to be put together.
 #[derive(Debug, Clone)]
-pub struct Found {
+pub struct FittedLegs {
     /// First and last leg of each segment.
     pub legs: Vec<[DVec3; 2]>,
     /// How they were found.

@@ -7,14 +7,14 @@ use shapespline_geometry::DataPolygon;
 
 /// Nodes around segment `m` whose tension is to be raised, as offsets `−1, 0, 1, 2` from `m`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Pattern {
+pub struct TensionPattern {
     /// Whether node `m + k − 1` is to be raised.
     pub raise: [bool; 4],
     /// Whether the tensions at nodes `m` and `m + 1` are to be kept equal (5.65).
     pub equal: bool,
 }
 
-impl Pattern {
+impl TensionPattern {
     /// The pattern that mends the faults of a segment.
     ///
     /// A fault between the nodes, of global convexity, of torsion, or of a split coplanarity needs all

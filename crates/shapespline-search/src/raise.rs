@@ -3,7 +3,7 @@
 //! Raising tension until no criterion fails: paper 001, (5.58)–(5.65).
 
 use crate::{
-    Pattern, Phase, SearchOptions, Status, TensionFamily,
+    Phase, SearchOptions, Status, TensionFamily, TensionPattern,
     fronts::{Front, Fronts},
     state::{AROUND, State, on_all_sides},
 };
@@ -98,7 +98,7 @@ impl<F: TensionFamily> State<'_, F> {
         }
         let polygon = self.windows.polygon();
         self.faults.iter().all(|&(segment, faults)| {
-            let mut nodes = Pattern::of(faults).nodes(segment, polygon);
+            let mut nodes = TensionPattern::of(faults).nodes(segment, polygon);
             nodes.any(|i| self.nodes.binary_search(&i).is_ok_and(|at| has_risen(at, i)))
         })
     }
@@ -109,7 +109,7 @@ impl<F: TensionFamily> State<'_, F> {
         let mut equal = Vec::new();
         self.nodes.clear();
         for &(segment, faults) in &self.faults {
-            let pattern = Pattern::of(faults);
+            let pattern = TensionPattern::of(faults);
             self.nodes.extend(pattern.nodes(segment, self.windows.polygon()));
             if pattern.equal {
                 equal.push(segment);
@@ -127,10 +127,10 @@ impl<F: TensionFamily> State<'_, F> {
         let mut levels = Vec::new();
         for run in consecutive(equal, closed.then_some(n)) {
             let run = || run.iter().flat_map(|&m| [m % n, (m + 1) % n]);
-            let pull = |i: usize| self.tension(i) / self.family.weight(i);
+            let pull = |i: usize| self.tension(i) / self.family.tension_unit(i);
             let level = options.raised(run().map(pull).fold(0.0, f64::max));
             let raised = run().filter(|i| self.nodes.binary_search(i).is_ok());
-            levels.extend(raised.map(|i| (i, level * self.family.weight(i))));
+            levels.extend(raised.map(|i| (i, level * self.family.tension_unit(i))));
         }
         levels
     }
@@ -145,7 +145,7 @@ impl<F: TensionFamily> State<'_, F> {
     /// them and takes in all that are known to fail.
     fn faults_stay(&mut self) -> bool {
         let pending = std::mem::take(&mut self.pending);
-        let around = self.look(&on_all_sides::<F>(&pending), AROUND);
+        let around = self.trial(&on_all_sides::<F>(&pending), AROUND);
         self.pending = pending;
         let Some(around) = around else { return false };
         if self.faults.iter().any(|(i, _)| !around.contains(i)) {
@@ -271,7 +271,7 @@ mod tests {
             }
             Ok(())
         }
-        fn solve_again(&mut self) -> Result<(), Infallible> {
+        fn solve(&mut self) -> Result<(), Infallible> {
             Ok(())
         }
         fn end_legs(&self, i: usize) -> [DVec3; 2] {

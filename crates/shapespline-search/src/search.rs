@@ -8,7 +8,7 @@ use shapespline_criteria::{Checker, Faults, ShapeReport, StretchChecker, WindowC
 use shapespline_geometry::DataPolygon;
 
 use crate::{
-    FitError, Found, Outcome, Phase, SearchOptions, Status, Step, Strategy, TensionFamily,
+    FitError, FittedLegs, Outcome, Phase, SearchOptions, Status, Step, Strategy, TensionFamily,
     lower::lower,
     state::State,
     system::{collect, refill},
@@ -41,7 +41,7 @@ pub fn search_and_report<F>(
     polygon: &DataPolygon,
     options: &SearchOptions,
     monitor: &mut dyn FnMut(&Step) -> ControlFlow<()>,
-) -> Result<Found, FitError>
+) -> Result<FittedLegs, FitError>
 where
     F: TensionFamily,
     FitError: From<F::Error>,
@@ -53,7 +53,7 @@ where
     let (faults, applicable) = windows.look(|i| legs[i]);
     let clean = || ShapeReport::clean(polygon.segments(), options.criteria, applicable);
     if faults.is_empty() {
-        return Ok(Found { legs, outcome: Outcome::solved(), report: clean() });
+        return Ok(FittedLegs { legs, outcome: Outcome::solved(), report: clean() });
     }
     let outcome = search_from(faults, family, windows, options, monitor)?;
     refill(&mut legs, |i| family.end_legs(i));
@@ -66,7 +66,7 @@ where
     } else {
         options.checker(polygon)?.report_of(&open, |i| legs[i])
     };
-    Ok(Found { legs, outcome, report })
+    Ok(FittedLegs { legs, outcome, report })
 }
 
 /// [`search`], the faults of the curve as it is being known.

@@ -7,13 +7,13 @@ use std::ops::Range;
 use shapespline_banded::SolveError;
 use shapespline_geometry::DVec3;
 
-use crate::{TensionFamily, TensionSystem, system::legs_of, work::Work};
+use crate::{TensionFamily, TensionSystem, solver_cache::SolverCache, system::legs_of};
 
 /// A system with its solution, brought up to date where tension changes.
 #[derive(Debug)]
 pub struct SolvedFamily<S> {
     system: S,
-    work: Box<Work>,
+    cache: Box<SolverCache>,
 }
 
 impl<S: TensionSystem> SolvedFamily<S> {
@@ -22,14 +22,14 @@ impl<S: TensionSystem> SolvedFamily<S> {
     /// # Errors
     /// A system that f64 cannot hold.
     pub fn new(system: S) -> Result<Self, SolveError> {
-        let work = Work::begin(&system)?;
-        Ok(Self { system, work })
+        let cache = SolverCache::begin(&system)?;
+        Ok(Self { system, cache })
     }
 
     /// The system, with the tensions as they are.
     pub fn into_system(self) -> S {
-        let Self { system, work } = self;
-        work.end();
+        let Self { system, cache } = self;
+        cache.end();
         system
     }
 
@@ -58,15 +58,15 @@ impl<S: TensionSystem> TensionFamily for SolvedFamily<S> {
         changes: &[(usize, f64)],
         touched: &mut Vec<Range<usize>>,
     ) -> Result<(), SolveError> {
-        let Self { system, work } = self;
-        let Some(unknowns) = work.set(system, changes)? else {
+        let Self { system, cache } = self;
+        let Some(unknowns) = cache.set(system, changes)? else {
             touched.push(0..system.polygon().segments());
             return Ok(());
         };
         for nodes in unknowns {
             Self::touch(system, nodes.clone(), touched);
         }
-        if S::SCALES_LEGS {
+        if S::TENSION_SCALES_LEGS {
             for &(index, _) in changes {
                 let node = index / S::SIDES;
                 Self::touch(system, node..node + 1, touched);
@@ -75,30 +75,30 @@ impl<S: TensionSystem> TensionFamily for SolvedFamily<S> {
         Ok(())
     }
 
-    fn legs_under(
+    fn trial_legs(
         &mut self,
         changes: &[(usize, f64)],
         segments: Range<usize>,
         legs: &mut Vec<[DVec3; 2]>,
     ) -> bool {
-        self.work.legs_under(&mut self.system, changes, segments, legs)
+        self.cache.trial_legs(&mut self.system, changes, segments, legs)
     }
 
-    fn solve_again(&mut self) -> Result<(), SolveError> {
-        self.work.solve_again(&self.system)
+    fn solve(&mut self) -> Result<(), SolveError> {
+        self.cache.solve(&self.system)
     }
 
-    fn all_is_solved(&self) -> bool {
-        self.work.all_is_solved()
+    fn is_fully_solved(&self) -> bool {
+        self.cache.is_fully_solved()
     }
 
     #[inline]
     fn end_legs(&self, segment: usize) -> [DVec3; 2] {
-        legs_of(&self.system, self.work.solution(), segment)
+        legs_of(&self.system, self.cache.solution(), segment)
     }
 
-    fn weight(&self, node: usize) -> f64 {
-        self.system.weight(node)
+    fn tension_unit(&self, node: usize) -> f64 {
+        self.system.tension_unit(node)
     }
 }
 
@@ -109,7 +109,7 @@ mod tests {
     use shapespline_geometry::{Boundary, DataPolygon, Parametrization};
 
     use super::*;
-    use crate::work::{FEW, KEPT};
+    use crate::solver_cache::{MAX_CACHED_ROWS, MAX_TRIAL_ROWS};
 
     /// Tension that changes the rows beside a node as well, and the legs.
     struct Planted {
@@ -136,7 +136,7 @@ mod tests {
     }
 
     impl TensionSystem for Planted {
-        const SCALES_LEGS: bool = true;
+        const TENSION_SCALES_LEGS: bool = true;
         fn polygon(&self) -> &DataPolygon {
             &self.polygon
         }
@@ -146,7 +146,7 @@ mod tests {
         fn set_tension(&mut self, node: usize, tension: f64) {
             self.tension[node] = tension;
         }
-        fn rows_of(&self, node: usize, rows: &mut Vec<usize>) {
+        fn dependent_rows(&self, node: usize, rows: &mut Vec<usize>) {
             let n = self.count();
             let inside = |&row: &usize| self.is_cyclic() || row > 0 && row <= n;
             // Counted from one.
@@ -180,7 +180,7 @@ mod tests {
         for (n, boundary) in [
             (60, Boundary::ZeroCurvature),
             (500, Boundary::Periodic),
-            (KEPT + 900, Boundary::ZeroCurvature),
+            (MAX_CACHED_ROWS + 900, Boundary::ZeroCurvature),
         ] {
             let (mut family, mut legs) = (family(n, boundary), Vec::new());
             // Neighbours of the seam are no few rows.
@@ -200,7 +200,7 @@ mod tests {
                 let around = nodes.start.saturating_sub(2).max(first)..(nodes.end + 2).min(last);
                 let before: Vec<_> = (0..n).map(|i| family.end_legs(i)).collect();
                 let tensions = family.tension().to_vec();
-                assert!(family.legs_under(&changes, around.clone(), &mut legs));
+                assert!(family.trial_legs(&changes, around.clone(), &mut legs));
                 assert!((0..n).all(|i| family.end_legs(i) == before[i]));
                 assert_eq!(family.tension(), tensions);
                 let seen = legs.clone();
@@ -223,19 +223,19 @@ mod tests {
     #[test]
     fn of_few_rows_all_are_solved() {
         for boundary in [Boundary::ZeroCurvature, Boundary::Periodic] {
-            let (mut family, n) = (family(FEW - 1, boundary), FEW - 1);
-            assert!(family.all_is_solved());
+            let (mut family, n) = (family(MAX_TRIAL_ROWS - 1, boundary), MAX_TRIAL_ROWS - 1);
+            assert!(family.is_fully_solved());
             for (changes, again) in
                 [(vec![(3, 2.0), (9, 0.5)], false), (vec![(3, 7.0)], true), (vec![(9, 0.0)], false)]
             {
                 let mut touched = Vec::new();
                 family.set_tension(&changes, &mut touched).unwrap();
-                assert!(family.all_is_solved());
+                assert!(family.is_fully_solved());
                 assert_eq!(touched.as_slice(), std::slice::from_ref(&(0..n)));
                 let set: Vec<_> = (0..n).map(|i| family.end_legs(i)).collect();
                 if again {
-                    family.solve_again().unwrap();
-                    assert!(family.all_is_solved());
+                    family.solve().unwrap();
+                    assert!(family.is_fully_solved());
                 }
                 let Planted { polygon, tension } = &family.system;
                 let fresh = Planted { polygon: polygon.clone(), tension: tension.clone() };
@@ -248,16 +248,16 @@ mod tests {
         // Of many, those that a change is felt by.
         let (mut family, mut touched) = (family(500, Boundary::ZeroCurvature), Vec::new());
         family.set_tension(&[(250, 2.0)], &mut touched).unwrap();
-        assert!(!family.all_is_solved());
+        assert!(!family.is_fully_solved());
         assert!(touched.iter().all(|range| 150 < range.start && range.end < 350));
     }
 
     #[test]
     fn looks_at_much_at_once_are_refused() {
         let (mut family, mut legs) = (family(500, Boundary::Periodic), vec![[DVec3::ONE; 2]]);
-        for nodes in [vec![3, 3 + FEW], vec![0], vec![499], vec![]] {
+        for nodes in [vec![3, 3 + MAX_TRIAL_ROWS], vec![0], vec![499], vec![]] {
             let changes: Vec<_> = nodes.into_iter().map(|i| (i, 1.0)).collect();
-            assert!(!family.legs_under(&changes, 10..12, &mut legs));
+            assert!(!family.trial_legs(&changes, 10..12, &mut legs));
             assert!(legs.is_empty() && family.tension().iter().all(|&t| t == 0.0));
         }
     }

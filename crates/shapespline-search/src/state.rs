@@ -17,8 +17,7 @@ use crate::{Diagnostics, Outcome, Phase, Status, Step, TensionFamily, doubts::Do
 /// rayon's own pool are gone, and Python enters its own for work of this size only.
 const MANY: usize = 8192;
 
-/// Segments on either side of a change of tension that a look takes in first: what is further away hardly
-/// feels it.
+/// Segments checked on each side of a trial change; beyond them its effect is negligible.
 pub(crate) const AROUND: usize = 2;
 
 /// The family, the checker, and what is known to fail.
@@ -39,7 +38,7 @@ pub(crate) struct State<'s, F> {
     pub(crate) suspect: usize,
     /// Tensions (ascending by node) that are raised but not yet set.
     pub(crate) pending: Vec<(usize, f64)>,
-    /// Scratch: the nodes that are raised, their tensions before, and the legs of a look at other tension.
+    /// Scratch: the nodes that are raised, their tensions before, and the legs of a trial.
     pub(crate) nodes: Vec<usize>,
     pub(crate) before: Vec<f64>,
     pub(crate) legs: Vec<[DVec3; 2]>,
@@ -95,7 +94,7 @@ impl<'s, F: TensionFamily> State<'s, F> {
     }
 
     pub(crate) fn solve_and_check_anew(&mut self) -> Result<(), F::Error> {
-        self.family.solve_again()?;
+        self.family.solve()?;
         self.solves += 1;
         let family = &*self.family;
         self.faults = self.windows.all_faults(|i| family.end_legs(i));
@@ -106,11 +105,11 @@ impl<'s, F: TensionFamily> State<'s, F> {
 
     /// Fills `legs` with the end legs that segments around some tensions would have under other values of
     /// those, where that can be seen without setting them. Returns the segments.
-    pub(crate) fn look(&mut self, changes: &[(usize, f64)], reach: usize) -> Option<Range<usize>> {
+    pub(crate) fn trial(&mut self, changes: &[(usize, f64)], reach: usize) -> Option<Range<usize>> {
         let [first, last] = [changes.first()?.0, changes.last()?.0].map(|index| index / F::SIDES);
         let segments = self.windows.polygon().segments();
         let around = first.saturating_sub(reach)..segments.min(last + reach);
-        if !self.family.legs_under(changes, around.clone(), &mut self.legs) {
+        if !self.family.trial_legs(changes, around.clone(), &mut self.legs) {
             return None;
         }
         self.solves += 1;
@@ -124,7 +123,7 @@ impl<'s, F: TensionFamily> State<'s, F> {
         changes: &[(usize, f64)],
         reach: usize,
     ) -> Option<bool> {
-        let around = self.look(changes, reach)?;
+        let around = self.trial(changes, reach)?;
         let (legs, start) = (&self.legs, around.start);
         let suspect = self.suspect;
         let (windows, doubts) = (&mut self.windows, &self.doubts);
@@ -218,7 +217,7 @@ impl<'s, F: TensionFamily> State<'s, F> {
     /// Whether the last solve was one of all, and touched every segment.
     fn checks_all(&self) -> bool {
         let all = 0..self.windows.polygon().segments();
-        self.family.all_is_solved() && self.touched == [all]
+        self.family.is_fully_solved() && self.touched == [all]
     }
 
     /// Sets tensions and finds what has to be checked.

@@ -17,7 +17,7 @@ pub trait TensionSystem: Rows + Sync {
     const SIDES: usize = 1;
 
     /// Whether tension changes the legs beside a node even where the tangents stay as they are.
-    const SCALES_LEGS: bool;
+    const TENSION_SCALES_LEGS: bool;
 
     /// The polygon.
     fn polygon(&self) -> &DataPolygon;
@@ -29,19 +29,19 @@ pub trait TensionSystem: Rows + Sync {
     fn set_tension(&mut self, index: usize, tension: f64);
 
     /// Appends the rows that change with a tension to `rows`, in any order.
-    fn rows_of(&self, index: usize, rows: &mut Vec<usize>);
+    fn dependent_rows(&self, index: usize, rows: &mut Vec<usize>);
 
     /// Makes row `i` of it, which so far was that row under some other tension.
     #[inline]
-    fn renew(&self, i: usize, row: &mut Row) {
+    fn refresh_row(&self, i: usize, row: &mut Row) {
         *row = self.row(i);
     }
 
     /// First and last leg of a segment, from the unknowns at its two ends.
     fn legs(&self, segment: usize, tangents: [DVec3; 2]) -> [DVec3; 2];
 
-    /// As [`TensionFamily::weight`](crate::TensionFamily::weight).
-    fn weight(&self, _node: usize) -> f64 {
+    /// As [`TensionFamily::tension_unit`](crate::TensionFamily::tension_unit).
+    fn tension_unit(&self, _node: usize) -> f64 {
         1.0
     }
 }

@@ -63,7 +63,7 @@ impl Tension<'_> {
 
 /// One value a point from one a distinct node: of closed data the first stands for the last again.
 #[must_use]
-pub fn per_point(mut values: Vec<f64>, closed: bool) -> Vec<f64> {
+pub fn repeat_first_if_closed(mut values: Vec<f64>, closed: bool) -> Vec<f64> {
     if closed {
         values.extend(values.first().copied());
     }

@@ -10,11 +10,11 @@ use shapespline_geometry::{
     Boundary, DVec3, DataPolygon, InputError, PiecewiseCubic, ReparametrizedCubic,
 };
 use shapespline_search::{
-    Fit, FitError, Found, Interpolant, SearchOptions, SolvedFamily, Step, Tension,
-    or_of_all_criteria, per_point, search_and_report, solve_legs,
+    Fit, FitError, FittedLegs, Interpolant, SearchOptions, SolvedFamily, Step, Tension,
+    or_of_all_criteria, repeat_first_if_closed, search_and_report, solve_legs,
 };
 
-use crate::system::MannisSystem;
+use crate::system::ManniSystem;
 
 /// The scale `λ` of tangents in legs, each between `1e−65` and 1.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -103,7 +103,7 @@ impl TensionSpline {
     /// `λ` out of range or of a wrong length; tangents that overflow.
     pub fn new(polygon: DataPolygon, scale: TangentScale<'_>) -> Result<Self, FitError> {
         let slopes = scale.slopes(&polygon)?;
-        let system = MannisSystem::new(&polygon, slopes);
+        let system = ManniSystem::new(&polygon, slopes);
         let legs = solve_legs(&system)?;
         let (slopes, tension) = system.into_parts();
         Self::assemble(polygon, legs, slopes, tension)
@@ -147,9 +147,9 @@ impl TensionSpline {
         options: &SearchOptions,
         monitor: &mut dyn FnMut(&Step) -> ControlFlow<()>,
     ) -> Result<Fit<Self>, FitError> {
-        let mut family = SolvedFamily::new(MannisSystem::without_tension(&polygon))?;
+        let mut family = SolvedFamily::new(ManniSystem::without_tension(&polygon))?;
         let found = search_and_report(&mut family, &polygon, options, monitor)?;
-        let (Found { legs, outcome, report }, system) = (found, family.into_system());
+        let (FittedLegs { legs, outcome, report }, system) = (found, family.into_system());
         let (slopes, tension) = system.into_parts();
         let curve = Self::assemble(polygon, legs, slopes, tension)?;
         Ok(Fit { curve, outcome, report })
@@ -168,7 +168,7 @@ impl TensionSpline {
         tension: Vec<f64>,
     ) -> Result<Self, FitError> {
         let boundary = polygon.boundary();
-        let tension = per_point(tension, polygon.is_closed());
+        let tension = repeat_first_if_closed(tension, polygon.is_closed());
         let cubic = PiecewiseCubic::through(polygon, legs)?;
         Ok(Self { curve: ReparametrizedCubic::new(cubic, slopes)?, tension, boundary })
     }

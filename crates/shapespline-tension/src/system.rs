@@ -6,14 +6,14 @@ use std::ops::Range;
 
 use shapespline_banded::{Row, Rows};
 use shapespline_geometry::{DVec3, DataPolygon, Span};
-use shapespline_search::{TensionSystem, try_each_row, velocity_weight};
+use shapespline_search::{TensionSystem, tension_unit, try_each_row};
 
 /// The system (3.7)–(3.8) of paper 000 for the tangents `T_i`, each row divided by
 /// `h_{i−1}(h_iλ⁰_i)² + h_i(h_{i−1}λ¹_{i−1})²` so that its matrix has no unit (see the crate's page).
 ///
 /// Off-diagonal entries are at most 1 together, the diagonal is 3 less them.
 #[derive(Debug)]
-pub(crate) struct MannisSystem<'a> {
+pub(crate) struct ManniSystem<'a> {
     polygon: &'a DataPolygon,
     /// `[λ⁰, λ¹]` of each segment.
     slopes: Vec<[f64; 2]>,
@@ -22,7 +22,7 @@ pub(crate) struct MannisSystem<'a> {
     tension: Vec<f64>,
 }
 
-impl<'a> MannisSystem<'a> {
+impl<'a> ManniSystem<'a> {
     /// The system of given `λ`, each in `(0, 1]`, one pair a segment.
     pub(crate) fn new(polygon: &'a DataPolygon, slopes: Vec<[f64; 2]>) -> Self {
         let side = |index: usize| {
@@ -105,7 +105,7 @@ fn place_of(polygon: &DataPolygon, index: usize) -> Option<(usize, usize)> {
     }
 }
 
-impl Rows for MannisSystem<'_> {
+impl Rows for ManniSystem<'_> {
     fn count(&self) -> usize {
         self.polygon.nodes()
     }
@@ -143,11 +143,11 @@ impl Rows for MannisSystem<'_> {
     }
 }
 
-impl TensionSystem for MannisSystem<'_> {
+impl TensionSystem for ManniSystem<'_> {
     /// Manni's own generality: the two `λ` beside a node are independent (Lemmas 4.2 and 4.3 need their
     /// ratio bounded, so raising takes them together).
     const SIDES: usize = 2;
-    const SCALES_LEGS: bool = true;
+    const TENSION_SCALES_LEGS: bool = true;
 
     fn polygon(&self) -> &DataPolygon {
         self.polygon
@@ -166,7 +166,7 @@ impl TensionSystem for MannisSystem<'_> {
 
     /// The rows at both ends of the segment: its `λ` stands in that of its own node through the ratio of
     /// the two there, and in that of the other node (or natural end) as it is.
-    fn rows_of(&self, index: usize, rows: &mut Vec<usize>) {
+    fn dependent_rows(&self, index: usize, rows: &mut Vec<usize>) {
         if let Some((segment, _)) = place_of(self.polygon, index) {
             rows.extend([segment, (segment + 1) % self.count()]);
         }
@@ -179,8 +179,8 @@ impl TensionSystem for MannisSystem<'_> {
         [first * (third * start), last * (third * end)]
     }
 
-    fn weight(&self, node: usize) -> f64 {
-        velocity_weight(self.polygon, node)
+    fn tension_unit(&self, node: usize) -> f64 {
+        tension_unit(self.polygon, node)
     }
 }
 
@@ -203,7 +203,7 @@ mod tests {
             let polygon = DataPolygon::new(points, &Parametrization::Chordal, boundary).unwrap();
             let uneven = (0..8).map(|i| [1.0, if i == 5 { 0.5 } else { 1.0 }]).collect();
             for mut system in
-                [MannisSystem::without_tension(&polygon), MannisSystem::new(&polygon, uneven)]
+                [ManniSystem::without_tension(&polygon), ManniSystem::new(&polygon, uneven)]
             {
                 let mut kept: Vec<Row> = (0..system.count()).map(|i| system.row(i)).collect();
                 for (index, tension) in [
@@ -216,9 +216,9 @@ mod tests {
                 ] {
                     let mut rows = Vec::new();
                     system.set_tension(index, tension);
-                    system.rows_of(index, &mut rows);
+                    system.dependent_rows(index, &mut rows);
                     for i in rows {
-                        system.renew(i, &mut kept[i]);
+                        system.refresh_row(i, &mut kept[i]);
                     }
                     // Also the rows that were not named.
                     for (i, kept) in kept.iter().enumerate() {

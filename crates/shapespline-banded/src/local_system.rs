@@ -7,18 +7,18 @@ use std::ops::Range;
 use glam::DVec3;
 
 use crate::{
-    Resolvable, Row, Rows, SolveError,
-    sweep::{EARLY, Eliminated, eliminate, substitute},
+    Row, Rows, SolveError, UpdatableSolver,
+    elimination::{EARLY, Eliminated, eliminate, substitute},
 };
 
-/// Some neighbouring rows of a [`Resolvable`] system, to be solved with other coefficients while
+/// Some neighbouring rows of a [`UpdatableSolver`] system, to be solved with other coefficients while
 /// nothing else changes.
 ///
 /// The rows before them are eliminated as they are stored, those after them from the other end as far
-/// as they are felt: a solve then costs these rows and no others, where [`Resolvable::update`] goes on
+/// as they are felt: a solve then costs these rows and no others, where [`UpdatableSolver::update`] goes on
 /// until its changes have died away. Solutions are those of a full solve up to rounding.
 #[derive(Debug, Clone, Default)]
-pub struct Place {
+pub struct LocalSystem {
     rows: Vec<Row>,
     first: usize,
     /// What the rows before hand on to the first, and those after to the last.
@@ -27,16 +27,16 @@ pub struct Place {
     solution: Vec<DVec3>,
 }
 
-impl Place {
-    /// Goes to some rows of a system. O(rows), and up to 128 rows after them.
+impl LocalSystem {
+    /// Takes some neighbouring rows of a system. O(rows), and up to 128 rows after them.
     ///
     /// False in a cyclic system where the rows would be felt all the way round.
     ///
     /// # Errors
     /// A pivot that is zero or not finite.
-    pub fn go<R: Rows>(
+    pub fn reset<R: Rows>(
         &mut self,
-        solver: &Resolvable,
+        solver: &UpdatableSolver,
         system: &R,
         rows: Range<usize>,
     ) -> Result<bool, SolveError> {
@@ -65,13 +65,13 @@ impl Place {
         Ok(true)
     }
 
-    /// The rows of this place, empty before the first [`Place::go`].
+    /// The rows of this local system, empty before the first [`LocalSystem::reset`].
     #[must_use]
     pub fn rows(&self) -> Range<usize> {
         self.first..self.first + self.rows.len()
     }
 
-    /// A row of this place, to be made another one. It stays that until the next [`Place::go`].
+    /// A row of this local system, to be made another one. It stays that until the next [`LocalSystem::reset`].
     pub fn row_mut(&mut self, i: usize) -> &mut Row {
         &mut self.rows[i - self.first]
     }
@@ -105,7 +105,7 @@ impl Place {
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
-    use crate::resolvable::tests::Array;
+    use crate::updatable::tests::Array;
 
     fn system(n: usize, cyclic: bool) -> Array {
         let row = |i: usize| {
@@ -121,9 +121,9 @@ mod tests {
         Array { rows, cyclic }
     }
 
-    /// At both ends, inside, whole systems, and again after the rows of the place have become others.
+    /// At both ends, inside, whole systems, and again after the rows of the local system have become others.
     #[test]
-    fn a_place_is_solved_as_the_whole_system_is() {
+    fn a_local_system_is_solved_as_the_whole_system_is() {
         for (n, cyclic, first, count) in [
             (40, false, 0, 5),
             (40, false, 33, 7),
@@ -136,18 +136,18 @@ mod tests {
             (900, true, 880, 20),
         ] {
             let mut system = system(n, cyclic);
-            let solver = Resolvable::new(&system).unwrap();
-            let mut place = Place::default();
+            let solver = UpdatableSolver::new(&system).unwrap();
+            let mut local = LocalSystem::default();
             let rows = first..first + count;
-            assert!(place.go(&solver, &system, rows.clone()).unwrap());
-            assert_eq!(place.rows(), rows);
+            assert!(local.reset(&solver, &system, rows.clone()).unwrap());
+            assert_eq!(local.rows(), rows);
             for factor in [1.0, 7.0, 1e6] {
                 for i in rows.clone().step_by(2) {
                     system.rows[i].diagonal *= factor;
-                    *place.row_mut(i) = system.rows[i];
+                    *local.row_mut(i) = system.rows[i];
                 }
-                let whole = Resolvable::new(&system).unwrap();
-                let found = place.solve().unwrap();
+                let whole = UpdatableSolver::new(&system).unwrap();
+                let found = local.solve().unwrap();
                 assert_eq!(found.len(), count);
                 for (found, expected) in found.iter().zip(&whole.solution()[rows.clone()]) {
                     let error = (*found - *expected).length();
@@ -158,27 +158,27 @@ mod tests {
     }
 
     #[test]
-    fn a_place_that_is_felt_all_the_way_round_is_refused() {
+    fn a_local_system_that_is_felt_all_the_way_round_is_refused() {
         let system = system(140, true);
-        let solver = Resolvable::new(&system).unwrap();
-        let mut place = Place::default();
-        assert!(place.go(&solver, &system, 20..32).unwrap());
-        assert!(!place.go(&solver, &system, 20..33).unwrap());
+        let solver = UpdatableSolver::new(&system).unwrap();
+        let mut local = LocalSystem::default();
+        assert!(local.reset(&solver, &system, 20..32).unwrap());
+        assert!(!local.reset(&solver, &system, 20..33).unwrap());
     }
 
     #[test]
     fn a_bad_pivot_names_its_row() {
         for (row, bad) in [(22, 22), (30, 30)] {
             let mut system = system(60, false);
-            let solver = Resolvable::new(&system).unwrap();
-            let mut place = Place::default();
-            assert!(place.go(&solver, &system, 20..25).unwrap());
+            let solver = UpdatableSolver::new(&system).unwrap();
+            let mut local = LocalSystem::default();
+            assert!(local.reset(&solver, &system, 20..25).unwrap());
             system.rows[row].diagonal = f64::NAN;
             let found = if row < 25 {
-                *place.row_mut(row) = system.rows[row];
-                place.solve().map(|_| true)
+                *local.row_mut(row) = system.rows[row];
+                local.solve().map(|_| true)
             } else {
-                place.go(&solver, &system, 20..25)
+                local.reset(&solver, &system, 20..25)
             };
             assert!(matches!(found, Err(SolveError::Pivot { row, .. }) if row == bad));
         }

@@ -3,7 +3,7 @@
 //! Elimination and back substitution of a whole open system, on all threads where it is long.
 //!
 //! What a row inherits from the rows before it dies away geometrically, and in floating point
-//! altogether (see [`crate::Resolvable`]). So each part of a long system begins some rows early with
+//! altogether (see [`crate::UpdatableSolver`]). So each part of a long system begins some rows early with
 //! nothing inherited, and has met the true numbers, bit for bit, when it comes to its own rows. That
 //! is verified: where a part began with other numbers than the one before it ended with, it is done
 //! again until the two meet. The result is that of one run from end to end, for any number of threads.
@@ -11,7 +11,7 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use crate::{Row, Rows, SolveError, error::usable};
+use crate::{Row, Rows, SolveError, error::checked_pivot};
 
 /// Rows a part.
 const PART: usize = 16_384;
@@ -25,7 +25,7 @@ pub(crate) type Eliminated = (f64, DVec3);
 /// One step of Gaussian elimination.
 #[inline]
 pub(crate) fn eliminate(i: usize, row: Row, before: Eliminated) -> Result<Eliminated, SolveError> {
-    let pivot = usable(i, row.diagonal - row.lower * before.0)?;
+    let pivot = checked_pivot(i, row.diagonal - row.lower * before.0)?;
     // Two divisions at once: the next row waits for the first, and would for a product after it.
     let (ratio, reciprocal) = (row.upper / pivot, 1.0 / pivot);
     Ok((ratio, (row.right - before.1 * row.lower) * reciprocal))
@@ -123,7 +123,7 @@ pub(crate) fn substitute(ratio: &[f64], x: &mut [DVec3], mut after: DVec3) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Resolvable, solve_once};
+    use crate::{UpdatableSolver, solve_once};
 
     /// Rows with a diagonal of their own: with two, influence dies as in a spline; with one, hardly.
     struct Planted(f64);
@@ -163,7 +163,7 @@ mod tests {
             assert_eq!(substitute_all(&ratio, &mut parts), diagonal == 2.0);
             assert_eq!(parts == whole, diagonal == 2.0);
             assert_eq!(solve_once(&rows).unwrap(), whole);
-            assert_eq!(Resolvable::new(&rows).unwrap().solution(), whole);
+            assert_eq!(UpdatableSolver::new(&rows).unwrap().solution(), whole);
         }
     }
 }

@@ -1,24 +1,24 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Solving a system while its tension changes: the rows as they were made, and looks at other tension.
+//! Solving a system while its tension changes: its rows are cached, and trials solve only a few of them.
 
 use std::{cell::Cell, convert::Infallible, ops::Range};
 
-use shapespline_banded::{Place, Resolvable, Row, Rows, SolveError};
+use shapespline_banded::{LocalSystem, Row, Rows, SolveError, UpdatableSolver};
 use shapespline_geometry::DVec3;
 
 use crate::TensionSystem;
 
-/// Rows that are kept: those of short curves, whose search comes back to them again and again.
-pub(crate) const KEPT: usize = 2048;
+/// Rows that are cached at most: enough for short curves, whose search reads them again and again.
+pub(crate) const MAX_CACHED_ROWS: usize = 2048;
 
-/// A system whose first rows are kept as they were made.
-struct Kept<'s, S> {
+/// A system whose first rows are cached.
+struct CachedRows<'s, S> {
     system: &'s S,
     rows: &'s [Row],
 }
 
-impl<S: Rows> Rows for Kept<'_, S> {
+impl<S: Rows> Rows for CachedRows<'_, S> {
     fn count(&self) -> usize {
         self.system.count()
     }
@@ -41,62 +41,62 @@ impl<S: Rows> Rows for Kept<'_, S> {
         rows: Range<usize>,
         mut take: impl FnMut(usize, Row) -> Result<(), E>,
     ) -> Result<(), E> {
-        let kept = rows.start.min(self.rows.len())..rows.end.min(self.rows.len());
-        kept.clone().zip(&self.rows[kept.clone()]).try_for_each(|(i, row)| take(i, *row))?;
-        (kept.end.max(rows.start)..rows.end).try_for_each(|i| take(i, self.row(i)))
+        let cached = rows.start.min(self.rows.len())..rows.end.min(self.rows.len());
+        cached.clone().zip(&self.rows[cached.clone()]).try_for_each(|(i, row)| take(i, *row))?;
+        (cached.end.max(rows.start)..rows.end).try_for_each(|i| take(i, self.row(i)))
     }
 }
 
-/// Rows from which on looking at other tension costs what setting it does. Where a system has no more, a
-/// change is felt by nearly all: all are solved.
-pub(crate) const FEW: usize = 96;
+/// Above this many rows a trial solve costs as much as an update. Smaller systems are re-solved in full:
+/// a change alters nearly all of their unknowns.
+pub(crate) const MAX_TRIAL_ROWS: usize = 96;
 
-/// What solving and looking take; all but the solution is scratch.
+/// The solver and the memory of solves and trials; all but the solution is scratch.
 #[derive(Debug, Default)]
-pub(crate) struct Work {
-    solver: Resolvable,
+pub(crate) struct SolverCache {
+    solver: UpdatableSolver,
     /// Made when tension first changes: most curves need none.
-    kept: Vec<Row>,
+    cached: Vec<Row>,
     /// The tensions that were changed last, the rows that this changes, and the unknowns.
     indices: Vec<usize>,
     rows: Vec<usize>,
     unknowns: Vec<Range<usize>>,
-    /// Where looks are taken, and whether the system is still the one that the place was made of.
-    place: Place,
-    place_is_valid: bool,
-    /// Rows of the place that are those of the last look.
-    looked: Vec<usize>,
-    /// The tensions that a look sets aside, as they are.
+    /// The rows that trials solve, and whether the system is still the one they were taken from.
+    local: LocalSystem,
+    local_is_valid: bool,
+    /// Rows of the local system that hold the coefficients of the last trial.
+    trial_rows: Vec<usize>,
+    /// The current values of the tensions that a trial replaces.
     present: Vec<(usize, f64)>,
-    /// Whether the solution is that of a solve of all rows, and not brought up to date.
-    all_is_solved: bool,
+    /// Whether the solution comes from a full solve, not from an update.
+    is_fully_solved: bool,
 }
 
 thread_local! {
     /// For the next curve of this thread: short curves come in thousands, and memory for one costs a tenth
     /// of its search.
-    static SPARE: Cell<Option<Box<Work>>> = const { Cell::new(None) };
+    static SPARE: Cell<Option<Box<SolverCache>>> = const { Cell::new(None) };
 }
 
-impl Work {
+impl SolverCache {
     /// Solves a system as it is. O(N).
     ///
     /// # Errors
     /// A system that f64 cannot hold.
     pub(crate) fn begin<S: TensionSystem>(system: &S) -> Result<Box<Self>, SolveError> {
-        let mut work = SPARE.try_with(Cell::take).ok().flatten().unwrap_or_default();
-        work.kept.clear();
-        work.indices.clear();
-        work.rows.clear();
-        work.place_is_valid = false;
-        work.all_is_solved = true;
-        work.solver.solve(system)?;
-        Ok(work)
+        let mut cache = SPARE.try_with(Cell::take).ok().flatten().unwrap_or_default();
+        cache.cached.clear();
+        cache.indices.clear();
+        cache.rows.clear();
+        cache.local_is_valid = false;
+        cache.is_fully_solved = true;
+        cache.solver.solve(system)?;
+        Ok(cache)
     }
 
     /// Leaves the memory to the next curve of this thread.
     pub(crate) fn end(self: Box<Self>) {
-        if self.solver.solution().len() <= KEPT {
+        if self.solver.solution().len() <= MAX_CACHED_ROWS {
             // A thread that ends keeps nothing.
             let _ = SPARE.try_with(|spare| spare.set(Some(self)));
         }
@@ -108,19 +108,19 @@ impl Work {
         self.solver.solution()
     }
 
-    /// Whether they are those of a solve of all rows, and not brought up to date.
-    pub(crate) fn all_is_solved(&self) -> bool {
-        self.all_is_solved
+    /// True if the tangents come from a full solve, not from an update.
+    pub(crate) fn is_fully_solved(&self) -> bool {
+        self.is_fully_solved
     }
 
-    /// Solves all rows, made anew.
+    /// Solves the whole system.
     ///
     /// # Errors
     /// A system that f64 cannot hold.
-    pub(crate) fn solve_again<S: TensionSystem>(&mut self, system: &S) -> Result<(), SolveError> {
-        self.place_is_valid = false;
-        self.all_is_solved = true;
-        self.solver.solve_again(system)
+    pub(crate) fn solve<S: TensionSystem>(&mut self, system: &S) -> Result<(), SolveError> {
+        self.local_is_valid = false;
+        self.is_fully_solved = true;
+        self.solver.solve(system)
     }
 
     /// Sets tensions and solves. The unknowns that change, or `None` where all are solved.
@@ -132,28 +132,28 @@ impl Work {
         system: &mut S,
         changes: &[(usize, f64)],
     ) -> Result<Option<&[Range<usize>]>, SolveError> {
-        self.keep_rows(system);
-        self.place_is_valid = false;
+        self.cache_rows(system);
+        self.local_is_valid = false;
         self.change(system, changes);
         for &i in &self.rows {
-            if let Some(row) = self.kept.get_mut(i) {
-                system.renew(i, row);
+            if let Some(row) = self.cached.get_mut(i) {
+                system.refresh_row(i, row);
             }
         }
-        let kept = Kept { system: &*system, rows: &self.kept };
-        self.all_is_solved = kept.count() <= FEW;
-        if self.all_is_solved {
-            self.solver.solve_again(&kept)?;
+        let cached = CachedRows { system: &*system, rows: &self.cached };
+        self.is_fully_solved = cached.count() <= MAX_TRIAL_ROWS;
+        if self.is_fully_solved {
+            self.solver.solve(&cached)?;
             return Ok(None);
         }
         self.unknowns.clear();
-        self.solver.update(&kept, &self.rows, &mut self.unknowns)?;
+        self.solver.update(&cached, &self.rows, &mut self.unknowns)?;
         Ok(Some(&self.unknowns))
     }
 
-    /// Fills `legs` with those of some segments under other tensions, nothing of which stays. False where
-    /// that takes more than a few rows.
-    pub(crate) fn legs_under<S: TensionSystem>(
+    /// Fills `legs` with those that some segments would have under other tensions, and changes nothing
+    /// else. False if that takes more than [`MAX_TRIAL_ROWS`].
+    pub(crate) fn trial_legs<S: TensionSystem>(
         &mut self,
         system: &mut S,
         changes: &[(usize, f64)],
@@ -162,25 +162,25 @@ impl Work {
     ) -> bool {
         legs.clear();
         let (Some(first), Some(last)) = (changes.first(), changes.last()) else { return false };
-        if last.0 - first.0 >= FEW * S::SIDES {
+        if last.0 - first.0 >= MAX_TRIAL_ROWS * S::SIDES {
             return false;
         }
-        self.keep_rows(system);
+        self.cache_rows(system);
         let present = changes.iter().map(|&(index, _)| (index, system.tension()[index]));
         self.present.clear();
         self.present.extend(present);
         self.change(system, changes);
         // What cannot be solved is no answer: to set the tension will say why.
-        let looked = self.look(system, changes, segments, legs).unwrap_or(false);
+        let solved = self.trial(system, changes, segments, legs).unwrap_or(false);
         self.restore(system);
-        looked
+        solved
     }
 
-    fn keep_rows<S: TensionSystem>(&mut self, system: &S) {
-        if self.kept.is_empty() {
-            let few = 0..system.count().min(KEPT);
+    fn cache_rows<S: TensionSystem>(&mut self, system: &S) {
+        if self.cached.is_empty() {
+            let few = 0..system.count().min(MAX_CACHED_ROWS);
             let Ok(()) = system.try_each(few, |_, row| {
-                self.kept.push(row);
+                self.cached.push(row);
                 Ok::<(), Infallible>(())
             });
         }
@@ -196,7 +196,7 @@ impl Work {
         self.indices.clear();
         self.indices.extend(indices());
         self.rows.clear();
-        indices().for_each(|index| system.rows_of(index, &mut self.rows));
+        indices().for_each(|index| system.dependent_rows(index, &mut self.rows));
         if !self.rows.is_sorted_by(|a, b| a < b) {
             self.rows.sort_unstable();
             self.rows.dedup();
@@ -210,9 +210,9 @@ impl Work {
         }
     }
 
-    /// The legs of some segments under the changes, which have been made in the system alone. False where
-    /// that takes more than a few rows.
-    fn look<S: TensionSystem>(
+    /// Computes the legs of some segments under the changes, which so far are set in the system only.
+    /// False if that takes more than [`MAX_TRIAL_ROWS`].
+    fn trial<S: TensionSystem>(
         &mut self,
         system: &mut S,
         changes: &[(usize, f64)],
@@ -224,28 +224,28 @@ impl Work {
         };
         // The last segment of closed data ends where the first begins, in no few rows.
         let rows = first.min(segments.start)..(last + 1).max(segments.end + 1);
-        if rows.len() > FEW || rows.end > system.count() {
+        if rows.len() > MAX_TRIAL_ROWS || rows.end > system.count() {
             return Ok(false);
         }
-        let place = self.place.rows();
-        if !(self.place_is_valid && place.start <= rows.start && rows.end <= place.end) {
+        let place = self.local.rows();
+        if !(self.local_is_valid && place.start <= rows.start && rows.end <= place.end) {
             self.restore(system);
-            let kept = Kept { system: &*system, rows: &self.kept };
-            self.place_is_valid = self.place.go(&self.solver, &kept, rows)?;
-            self.looked.clear();
+            let cached = CachedRows { system: &*system, rows: &self.cached };
+            self.local_is_valid = self.local.reset(&self.solver, &cached, rows)?;
+            self.trial_rows.clear();
             self.change(system, changes);
         }
-        if !self.place_is_valid {
+        if !self.local_is_valid {
             return Ok(false);
         }
-        if self.looked != self.rows {
-            let kept = Kept { system: &*system, rows: &self.kept };
-            self.looked.iter().for_each(|&i| *self.place.row_mut(i) = kept.row(i));
-            self.looked.clone_from(&self.rows);
+        if self.trial_rows != self.rows {
+            let cached = CachedRows { system: &*system, rows: &self.cached };
+            self.trial_rows.iter().for_each(|&i| *self.local.row_mut(i) = cached.row(i));
+            self.trial_rows.clone_from(&self.rows);
         }
-        self.rows.iter().for_each(|&i| system.renew(i, self.place.row_mut(i)));
-        let skipped = segments.start - self.place.rows().start;
-        let tangents = self.place.solve()?[skipped..].windows(2);
+        self.rows.iter().for_each(|&i| system.refresh_row(i, self.local.row_mut(i)));
+        let skipped = segments.start - self.local.rows().start;
+        let tangents = self.local.solve()?[skipped..].windows(2);
         legs.extend(segments.zip(tangents).map(|(i, ends)| system.legs(i, [ends[0], ends[1]])));
         Ok(true)
     }

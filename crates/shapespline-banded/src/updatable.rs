@@ -19,7 +19,7 @@ use glam::DVec3;
 
 use crate::{
     Rows, SolveError,
-    sweep::{Eliminated, eliminate, eliminate_all, substitute, substitute_all},
+    elimination::{Eliminated, eliminate, eliminate_all, substitute, substitute_all},
 };
 
 /// Relative change from which an unknown counts as touched.
@@ -27,7 +27,7 @@ const SIGNIFICANT: f64 = 1e-13;
 
 /// Solution of a tridiagonal or cyclic system, with what is needed to bring it up to date.
 #[derive(Debug, Clone, Default)]
-pub struct Resolvable {
+pub struct UpdatableSolver {
     /// Elimination: `x[i] = reduced[i] − ratio[i] x[i+1]`.
     ratio: Vec<f64>,
     reduced: Vec<DVec3>,
@@ -36,7 +36,7 @@ pub struct Resolvable {
     changed: Vec<Range<usize>>,
 }
 
-impl Resolvable {
+impl UpdatableSolver {
     /// Solves the whole system. O(n).
     ///
     /// # Errors
@@ -47,7 +47,7 @@ impl Resolvable {
         Ok(new)
     }
 
-    /// Solves another system in the memory of this one. O(n).
+    /// Solves a whole system, this one again or another, in the same memory. O(n).
     ///
     /// # Errors
     /// A pivot that is zero or not finite.
@@ -56,7 +56,16 @@ impl Resolvable {
         self.ratio.resize(n, 0.0);
         self.reduced.resize(n, DVec3::ZERO);
         self.solution.resize(n, DVec3::ZERO);
-        self.solve_again(rows)
+        if rows.is_cyclic() {
+            return self.solve_cyclic(rows);
+        }
+        eliminate_all(rows, &mut self.ratio, &mut self.reduced)?;
+        self.solution.copy_from_slice(&self.reduced);
+        if !substitute_all(&self.ratio, &mut self.solution) {
+            self.solution.copy_from_slice(&self.reduced);
+            substitute(&self.ratio, &mut self.solution, DVec3::ZERO);
+        }
+        Ok(())
     }
 
     /// The unknowns.
@@ -71,21 +80,9 @@ impl Resolvable {
         self.solution
     }
 
-    /// Solves the whole system again, whatever was stored. O(n).
-    ///
-    /// # Errors
-    /// A pivot that is zero or not finite.
-    pub fn solve_again<R: Rows + Sync>(&mut self, rows: &R) -> Result<(), SolveError> {
+    /// Goes round and round until the numbers repeat.
+    fn solve_cyclic<R: Rows>(&mut self, rows: &R) -> Result<(), SolveError> {
         let n = self.solution.len();
-        if !rows.is_cyclic() {
-            eliminate_all(rows, &mut self.ratio, &mut self.reduced)?;
-            self.solution.copy_from_slice(&self.reduced);
-            if !substitute_all(&self.ratio, &mut self.solution) {
-                self.solution.copy_from_slice(&self.reduced);
-                substitute(&self.ratio, &mut self.solution, DVec3::ZERO);
-            }
-            return Ok(());
-        }
         let limit = Self::limit(rows);
         let mut before = (0.0, DVec3::ZERO);
         for step in 0..limit {
@@ -126,7 +123,7 @@ impl Resolvable {
     ) -> Result<(), SolveError> {
         let n = self.solution.len();
         if rows.is_cyclic() && changed.len() * 8 > n {
-            self.solve_again(rows)?;
+            self.solve(rows)?;
             touched.push(0..n);
             return Ok(());
         }
@@ -242,13 +239,13 @@ impl Resolvable {
     }
 }
 
-/// Solves a system that will not change: the same numbers as [`Resolvable::new`], with half its memory.
+/// Solves a system that will not change: the same numbers as [`UpdatableSolver::new`], with half its memory.
 ///
 /// # Errors
 /// A pivot that is zero or not finite.
 pub fn solve_once<R: Rows + Sync>(rows: &R) -> Result<Vec<DVec3>, SolveError> {
     if rows.is_cyclic() {
-        return Resolvable::new(rows).map(Resolvable::into_solution);
+        return UpdatableSolver::new(rows).map(UpdatableSolver::into_solution);
     }
     let n = rows.count();
     let (mut ratio, mut solution) = (vec![0.0; n], vec![DVec3::ZERO; n]);
@@ -342,7 +339,7 @@ pub(crate) mod tests {
         ) {
             let mut system = Array { rows, cyclic };
             let n = system.count();
-            let mut solver = Resolvable::new(&system).unwrap();
+            let mut solver = UpdatableSolver::new(&system).unwrap();
             for round in rounds {
                 let mut changed: Vec<usize> = round.iter().map(|(i, _)| i % n).collect();
                 changed.sort_unstable();
@@ -353,7 +350,7 @@ pub(crate) mod tests {
                 let old = solver.solution().to_vec();
                 let mut touched = Vec::new();
                 solver.update(&system, &changed, &mut touched).unwrap();
-                let fresh = Resolvable::new(&system).unwrap();
+                let fresh = UpdatableSolver::new(&system).unwrap();
                 prop_assert_eq!(&solve_once(&system).unwrap(), fresh.solution());
                 if !cyclic {
                     prop_assert_eq!(solver.solution(), fresh.solution());
@@ -382,24 +379,24 @@ pub(crate) mod tests {
             })
             .collect();
         let mut system = Array { rows, cyclic: false };
-        let mut solver = Resolvable::new(&system).unwrap();
+        let mut solver = UpdatableSolver::new(&system).unwrap();
         system.rows[50_000].diagonal = 4.0;
         let mut touched = Vec::new();
         solver.update(&system, &[50_000], &mut touched).unwrap();
         assert_eq!(touched.len(), 1);
         assert!(touched[0].len() < 120, "{touched:?}");
-        assert_eq!(solver.solution(), Resolvable::new(&system).unwrap().solution());
+        assert_eq!(solver.solution(), UpdatableSolver::new(&system).unwrap().solution());
     }
 
     #[test]
     fn a_bad_pivot_names_its_row() {
         let row = Row { lower: 0.5, diagonal: 2.0, upper: 0.5, right: DVec3::X };
         let mut system = Array { rows: vec![row; 9], cyclic: false };
-        let mut solver = Resolvable::new(&system).unwrap();
+        let mut solver = UpdatableSolver::new(&system).unwrap();
         system.rows[4].diagonal = f64::NAN;
         let found = solver.update(&system, &[4], &mut Vec::new()).unwrap_err();
         assert!(matches!(found, SolveError::Pivot { row: 4, .. }));
-        assert!(matches!(Resolvable::new(&system), Err(SolveError::Pivot { row: 4, .. })));
+        assert!(matches!(UpdatableSolver::new(&system), Err(SolveError::Pivot { row: 4, .. })));
     }
 
     /// Found by mutation: nobody solved a cyclic system again whose rows had changed since.
@@ -417,12 +414,12 @@ pub(crate) mod tests {
                 (rows[0].lower, rows[49].upper) = (0.0, 0.0);
             }
             let mut system = Array { rows, cyclic };
-            let mut solver = Resolvable::new(&system).unwrap();
+            let mut solver = UpdatableSolver::new(&system).unwrap();
             // Far from where the elimination begins.
             system.rows[30].right *= 3.0;
             system.rows[31].diagonal = 5.0;
-            solver.solve_again(&system).unwrap();
-            let fresh = Resolvable::new(&system).unwrap();
+            solver.solve(&system).unwrap();
+            let fresh = UpdatableSolver::new(&system).unwrap();
             for (found, expected) in solver.solution().iter().zip(fresh.solution()) {
                 assert!((*found - *expected).length() < 1e-14, "{cyclic}: {found} {expected}");
             }
