@@ -6,13 +6,15 @@
 //! convexity or inflection, turning, and collinearity (for the derivation see the crate's page). Infinite
 //! where nothing bounds.
 
-use shapespline_criteria::{Calls, Criterion};
+use shapespline_criteria::{Criterion, Requirements};
 use shapespline_geometry::{DVec3, length};
 
 /// What is asked of `ω` along the binormal vectors at both nodes of a segment, at both: convexity, of which
 /// global convexity follows, and inflection.
-const BETWEEN: Calls =
-    Calls::CONVEXITY.and(Calls::GLOBAL_CONVEXITY).and(Calls::INFLECTION).and(Calls::TURNING_PAIR);
+const BETWEEN: Requirements = Requirements::CONVEXITY
+    .and(Requirements::GLOBAL_CONVEXITY)
+    .and(Requirements::INFLECTION)
+    .and(Requirements::TURNING_PAIR);
 
 /// The least of some bounds, as a fraction: one division in the end instead of one each.
 struct Least {
@@ -37,7 +39,7 @@ impl Least {
 /// chords at the node before, at the two nodes, and at the node after. Without branches.
 #[inline(always)]
 pub(crate) fn of_signs(
-    calls: Calls,
+    calls: Requirements,
     [a, c]: [DVec3; 2],
     chord: DVec3,
     [before, p, q, after]: [DVec3; 4],
@@ -47,19 +49,19 @@ pub(crate) fn of_signs(
     let between = calls.any(BETWEEN);
     // (αP − qX)·n and (βP' − pX)·n must keep the signs they have at q = p = 0.
     let on_q = Least::NONE
-        .and(between | calls.any(Calls::TURNING_AT_START), first.dot(p), xp)
+        .and(between | calls.any(Requirements::TURNING_AT_START), first.dot(p), xp)
         .and(between, first.dot(q), xq)
-        .and(calls.any(Calls::TURNING_BEFORE), first.dot(before), x.dot(before));
+        .and(calls.any(Requirements::TURNING_BEFORE), first.dot(before), x.dot(before));
     let on_p = Least::NONE
-        .and(between | calls.any(Calls::TURNING_AT_END), last.dot(q), xq)
+        .and(between | calls.any(Requirements::TURNING_AT_END), last.dot(q), xq)
         .and(between, last.dot(p), xp)
-        .and(calls.any(Calls::TURNING_AFTER), last.dot(after), x.dot(after));
+        .and(calls.any(Requirements::TURNING_AFTER), last.dot(after), x.dot(after));
     [on_p.numerator / on_p.denominator, on_q.numerator / on_q.denominator]
 }
 
 /// What collinearity asks for, given the unit chord; `cotangent` is that of the half angle of its cone.
 pub(crate) fn of_lines(
-    calls: Calls,
+    calls: Requirements,
     [a, c]: [DVec3; 2],
     chord: DVec3,
     direction: DVec3,
@@ -74,10 +76,10 @@ pub(crate) fn of_lines(
         let bound = chord / (along + cotangent * length(leg - direction * along));
         if bound > 0.0 { bound } else { f64::INFINITY }
     };
-    if calls.any(Calls::LINE_AT_START) {
+    if calls.any(Requirements::LINE_AT_START) {
         (p, q) = (p.min(own(a)), q.min(other(c)));
     }
-    if calls.any(Calls::LINE_AT_END) {
+    if calls.any(Requirements::LINE_AT_END) {
         (p, q) = (p.min(other(a)), q.min(own(c)));
     }
     [p, q]
@@ -85,6 +87,6 @@ pub(crate) fn of_lines(
 
 /// Whether a segment has a bound by [`of_lines`].
 #[inline]
-pub(crate) fn has_lines(calls: Calls) -> bool {
-    calls.any(Calls::of(Criterion::Collinearity))
+pub(crate) fn has_lines(calls: Requirements) -> bool {
+    calls.any(Requirements::of(Criterion::Collinearity))
 }

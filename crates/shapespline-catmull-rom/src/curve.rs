@@ -161,7 +161,7 @@ impl CatmullRom {
         options.validate()?;
         let HandleOptions { criteria, tolerances, continuity, .. } = *options;
         let mut checked = limited(&polygon, options)?;
-        if !checked.found.faults.is_empty() && options.directions == Directions::Balanced {
+        if !checked.found.violations.is_empty() && options.directions == Directions::Balanced {
             // Planes known only to the tolerance: shorter handles mend them along the
             // parametrisation's directions, along others perhaps not.
             let local = HandleOptions { directions: Directions::Parametrization, ..*options };
@@ -169,10 +169,10 @@ impl CatmullRom {
         }
         let Checked { mut legs, mut factors, found } = checked;
         let mut checked = !found.cramped;
-        let (mut outcome, report) = if found.faults.is_empty() {
+        let (mut outcome, report) = if found.violations.is_empty() {
             (Outcome::solved(), ShapeReport::clean(legs.len(), criteria, found.applicable))
         } else {
-            // What the closed forms leave: coplanarity, and faults of rounding.
+            // What the closed forms leave: coplanarity, and violations of rounding.
             let mut handles = Handles::under_tension(&polygon, legs, factors);
             let rest =
                 SearchOptions { criteria, tolerances, step: 0.25, ..SearchOptions::default() };

@@ -66,11 +66,11 @@
 //! ```
 
 mod balanced;
+mod batch;
 mod bounds;
 mod curve;
 mod handles;
 mod parts;
-mod stretch;
 mod tangents;
 
 pub use curve::{CatmullRom, Continuity, Directions, HandleOptions};

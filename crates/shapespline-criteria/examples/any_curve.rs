@@ -28,12 +28,12 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let polygon = DataPolygon::new(points.clone(), &given, Boundary::ZeroCurvature)?;
 
     let shape = polygon_shape(&polygon, &Tolerances::default());
-    for (i, calls) in shape.calls.iter().enumerate() {
-        let names: Vec<&str> = calls.iter().map(|c| c.name()).collect();
-        println!("segment {i}: torsion {:>6.3}, calls for {}", shape.torsion[i], names.join(", "));
+    for (i, required) in shape.required.iter().enumerate() {
+        let names: Vec<&str> = required.iter().map(|c| c.name()).collect();
+        println!("segment {i}: torsion {:>6.3}, requires {}", shape.torsion[i], names.join(", "));
     }
     let checker =
-        CurveChecker::new(&polygon, &curve, Criteria::EVERY, Tolerances::default(), INTERPOLATION)?;
+        CurveChecker::new(&polygon, &curve, Criteria::ALL, Tolerances::default(), INTERPOLATION)?;
     println!("\n{}", checker.report());
     println!("polygon: {:?}", polygon_inflections(&points, Dimension::Three)?);
     println!("curve:   {:?}", curve_inflections(&curve));

@@ -42,7 +42,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         println!("{name:<44}{:>9.1} ns a segment  {said}", best * 1e9 / segments as f64);
     };
     let tolerances = Tolerances::default();
-    for (name, criteria) in [("default", Criteria::ALL), ("all", Criteria::EVERY)] {
+    for (name, criteria) in [("default", Criteria::DEFAULT), ("all", Criteria::ALL)] {
         time(&format!("cubic legs, {name} criteria"), n, &|| {
             let report = check(&polygon, |i| legs[i], criteria, tolerances);
             format!("{} violations", report.violations.len())
@@ -52,7 +52,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let three = Dimension::Three;
     let curve = PiecewiseBezier::new(polygon.parameters().to_vec(), &control, 3, three)?;
     time("cubic as Bézier points, default criteria", n, &|| {
-        let report = check_curve(&polygon, &curve, Criteria::ALL, tolerances);
+        let report = check_curve(&polygon, &curve, Criteria::DEFAULT, tolerances);
         report.map_or_else(|e| e.to_string(), |r| format!("{} violations", r.violations.len()))
     });
 
@@ -70,7 +70,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let quintic: Vec<DVec3> = (0..m).flat_map(|i| raise(raise(bezier(i).to_vec()))).collect();
     let quintic = PiecewiseBezier::new(few.parameters().to_vec(), &quintic, 5, three)?;
     time("quintics, default criteria", m, &|| {
-        let report = check_curve(&few, &quintic, Criteria::ALL, tolerances);
+        let report = check_curve(&few, &quintic, Criteria::DEFAULT, tolerances);
         report.map_or_else(
             |e| e.to_string(),
             |r| format!("{} violations, {} undecided", r.violations.len(), r.undecided.len()),

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! The checker: what a polygon calls for, held against segments.
+//! The checker: what a polygon requires, held against segments.
 
 use std::ops::Range;
 
@@ -8,13 +8,13 @@ use glam::DVec3;
 use shapespline_geometry::DataPolygon;
 
 use crate::{
-    Calls, Criteria, Criterion, Faults, Record, ShapeReport, StretchChecker, Tolerances, Undecided,
-    WindowChecker,
-    faults::{Cones, Situation, faults},
+    BatchChecker, CachedChecker, Criteria, Criterion, Record, Requirements, ShapeReport,
+    Tolerances, Undecided, Violations,
+    batch::far,
     margin, regular,
     resolution::is_straight,
     rounding::Lean,
-    stretch::far,
+    violations::{Cones, SegmentGeometry, violations},
 };
 
 /// A cubic between two points.
@@ -30,25 +30,25 @@ pub(crate) struct Cubic {
 /// The shape criteria of one data polygon.
 #[derive(Debug, Clone)]
 pub struct Checker<'a> {
-    local: StretchChecker<'a>,
+    local: BatchChecker<'a>,
     criteria: Criteria,
-    calls: Vec<Calls>,
+    required: Vec<Requirements>,
     /// Segments on which the curve is straight by construction.
     straight: Vec<usize>,
 }
 
 impl<'a> Checker<'a> {
-    /// Finds out what each segment of the polygon calls for among `criteria`. Cost O(N).
+    /// Finds out what each segment of the polygon requires among `criteria`. Cost O(N).
     #[must_use]
     pub fn new(polygon: &'a DataPolygon, criteria: Criteria, tolerances: Tolerances) -> Self {
-        let local = StretchChecker::new(polygon, criteria, tolerances);
-        Self { local, criteria, calls: local.all_calls(), straight: Vec::new() }
+        let local = BatchChecker::new(polygon, criteria, tolerances);
+        Self { local, criteria, required: local.all_requirements(), straight: Vec::new() }
     }
 
     /// Asks for nothing at some nodes, as at ends of zero curvature: where the curve is to have corners.
     #[must_use]
     pub fn with_free_nodes(mut self, nodes: &[usize]) -> Self {
-        let n = self.calls.len();
+        let n = self.required.len();
         for &node in nodes {
             let at = |k: isize| {
                 let segment = node as isize + k;
@@ -56,43 +56,53 @@ impl<'a> Checker<'a> {
                 inside.then_some(segment.rem_euclid(n as isize) as usize)
             };
             let touched = [
-                (at(-2), Calls::TURNING_AFTER),
-                (at(-1), Calls::AT_END.and(Calls::TURNING_AFTER).and(Calls::OF_BOTH)),
-                (at(0), Calls::AT_START.and(Calls::TURNING_BEFORE).and(Calls::OF_BOTH)),
-                (at(1), Calls::TURNING_BEFORE),
+                (at(-2), Requirements::TURNING_AFTER),
+                (
+                    at(-1),
+                    Requirements::AT_END
+                        .and(Requirements::TURNING_AFTER)
+                        .and(Requirements::OF_BOTH),
+                ),
+                (
+                    at(0),
+                    Requirements::AT_START
+                        .and(Requirements::TURNING_BEFORE)
+                        .and(Requirements::OF_BOTH),
+                ),
+                (at(1), Requirements::TURNING_BEFORE),
             ];
-            for (segment, calls) in touched {
+            for (segment, required) in touched {
                 if let Some(segment) = segment {
-                    self.leave_out(segment, calls);
+                    self.leave_out(segment, required);
                 }
             }
         }
         self
     }
 
-    /// Takes calls from a segment, which then has to be regular in any case.
-    fn leave_out(&mut self, segment: usize, calls: Calls) {
-        let left = self.calls[segment].without(calls);
-        let regular = Calls::of(Criterion::Regular);
-        let implied = left.any(Calls::IMPLY_REGULAR) || left.any(regular);
-        self.calls[segment] = if implied { left } else { left.and(Calls::REGULAR) };
+    /// Takes requirements from a segment, which then has to be regular in any case.
+    fn leave_out(&mut self, segment: usize, required: Requirements) {
+        let left = self.required[segment].without(required);
+        let regular = Requirements::of(Criterion::Regular);
+        let implied = left.any(Requirements::IMPLY_REGULAR) || left.any(regular);
+        self.required[segment] = if implied { left } else { left.and(Requirements::REGULAR) };
     }
 
     /// Takes some segments (ascending) to be straight by construction: nothing that turns is asked of them,
     /// and beside them, but for free nodes, turning and torsion may be zero where they meet.
     #[must_use]
     pub fn with_straight_segments(mut self, segments: &[usize], free: &[usize]) -> Self {
-        let (n, closed) = (self.calls.len(), self.polygon().is_closed());
+        let (n, closed) = (self.required.len(), self.polygon().is_closed());
         let is_straight = |i: usize| segments.binary_search(&i).is_ok();
         for &i in segments {
-            self.leave_out(i, Calls::of(Criterion::Turning));
+            self.leave_out(i, Requirements::of(Criterion::Turning));
             let before = if i > 0 { Some(i - 1) } else { closed.then_some(n - 1) };
             let after = if i + 1 < n { Some(i + 1) } else { closed.then_some(0) };
             let nodes = [i, if closed { (i + 1) % n } else { i + 1 }];
-            let flags = [Calls::STRAIGHT_AFTER, Calls::STRAIGHT_BEFORE];
+            let flags = [Requirements::STRAIGHT_AFTER, Requirements::STRAIGHT_BEFORE];
             for ((beside, node), flag) in [before, after].into_iter().zip(nodes).zip(flags) {
                 if let Some(k) = beside.filter(|&k| !is_straight(k) && !free.contains(&node)) {
-                    self.calls[k] = self.calls[k].and(flag);
+                    self.required[k] = self.required[k].and(flag);
                 }
             }
         }
@@ -126,34 +136,34 @@ impl<'a> Checker<'a> {
         self.local.tolerances()
     }
 
-    /// What each segment calls for.
+    /// What each segment requires.
     #[must_use]
-    pub fn calls(&self) -> &[Calls] {
-        &self.calls
+    pub fn requirements(&self) -> &[Requirements] {
+        &self.required
     }
 
     /// What is not proved of a segment with end legs `a, c`: conditions that fail, and conditions of which
     /// rounding hides whether they do.
     #[inline]
     #[must_use]
-    pub fn faults(&self, segment: usize, legs: [DVec3; 2]) -> Faults {
+    pub fn unproved(&self, segment: usize, legs: [DVec3; 2]) -> Violations {
         self.judge(segment, &self.cubic(segment, legs), Lean::Against)
     }
 
     /// What fails on a segment with end legs `a, c`, however control points and arithmetic round.
     #[inline]
     #[must_use]
-    pub fn violations(&self, segment: usize, legs: [DVec3; 2]) -> Faults {
+    pub fn violations(&self, segment: usize, legs: [DVec3; 2]) -> Violations {
         self.judge(segment, &self.cubic(segment, legs), Lean::For)
     }
 
     #[inline]
-    pub(crate) fn judge(&self, segment: usize, cubic: &Cubic, lean: Lean) -> Faults {
-        let calls = self.calls[segment];
-        if calls.is_empty() {
-            return Faults::default();
+    pub(crate) fn judge(&self, segment: usize, cubic: &Cubic, lean: Lean) -> Violations {
+        let required = self.required[segment];
+        if required.is_empty() {
+            return Violations::default();
         }
-        faults(&self.situation(segment, cubic), calls, lean, || self.cones(segment))
+        violations(&self.geometry(segment, cubic), required, lean, || self.cones(segment))
     }
 
     /// The cubic of end legs between two points of the polygon.
@@ -165,17 +175,17 @@ impl<'a> Checker<'a> {
 
     /// The segments that are not proved to keep the shape, ascending, with what is not proved. Cost O(N), on all threads for long
     /// curves.
-    pub fn all_faults<L>(&self, legs: L) -> Vec<(usize, Faults)>
+    pub fn all_unproved<L>(&self, legs: L) -> Vec<(usize, Violations)>
     where
         L: Fn(usize) -> [DVec3; 2] + Sync,
     {
-        self.in_windows().all_faults(legs)
+        self.cached().all_unproved(legs)
     }
 
-    /// This checker, for those who ask of many segments and come back to the same ones.
+    /// This checker with a cache, for callers that check the same segments again and again.
     #[must_use]
-    pub fn in_windows(&self) -> WindowChecker<'_> {
-        WindowChecker::new(self.local, Some(&self.calls))
+    pub fn cached(&self) -> CachedChecker<'_> {
+        CachedChecker::new(self.local, Some(&self.required))
     }
 
     /// The record of one criterion on a segment: verdict, margin and place. Where rounding hides the verdict
@@ -186,8 +196,8 @@ impl<'a> Checker<'a> {
     }
 
     pub(crate) fn record_of(&self, segment: usize, cubic: &Cubic, criterion: Criterion) -> Record {
-        let calls = self.calls[segment];
-        let applicable = calls.any(Calls::of(criterion));
+        let required = self.required[segment];
+        let applicable = required.any(Requirements::of(criterion));
         let mut record = Record {
             segment,
             criterion,
@@ -199,18 +209,18 @@ impl<'a> Checker<'a> {
         if !applicable {
             return record;
         }
-        let s = self.situation(segment, cubic);
+        let s = self.geometry(segment, cubic);
         let margin = match criterion {
             Criterion::Convexity => margin::convexity(&s),
             Criterion::Inflection => margin::inflection(&s),
-            Criterion::Turning => margin::turning(&s, calls),
-            Criterion::Torsion => margin::torsion(&s, calls),
-            Criterion::Coplanarity => margin::coplanarity(&s, calls, &self.cones(segment)),
-            Criterion::Collinearity => margin::collinearity(&s, calls, &self.cones(segment)),
+            Criterion::Turning => margin::turning(&s, required),
+            Criterion::Torsion => margin::torsion(&s, required),
+            Criterion::Coplanarity => margin::coplanarity(&s, required, &self.cones(segment)),
+            Criterion::Collinearity => margin::collinearity(&s, required, &self.cones(segment)),
             Criterion::GlobalConvexity => margin::global_convexity(&s),
-            Criterion::Regular => regular::margin(&s, calls),
+            Criterion::Regular => regular::margin(&s, required),
         };
-        let of = Faults::of(criterion);
+        let of = Violations::of(criterion);
         record.satisfied = !self.judge(segment, cubic, Lean::Against).any(of);
         // The proof decides on which side of zero the margin lies.
         record.margin = if record.satisfied {
@@ -230,7 +240,8 @@ impl<'a> Checker<'a> {
     where
         L: Fn(usize) -> [DVec3; 2] + Sync,
     {
-        let open: Vec<usize> = self.all_faults(&legs).into_iter().map(|fault| fault.0).collect();
+        let open: Vec<usize> =
+            self.all_unproved(&legs).into_iter().map(|violation| violation.0).collect();
         self.report_of(&open, legs)
     }
 
@@ -250,14 +261,14 @@ impl<'a> Checker<'a> {
     pub(crate) fn report_with(
         &self,
         segments: &[usize],
-        verdict: impl Fn(usize) -> [Faults; 2],
+        verdict: impl Fn(usize) -> [Violations; 2],
         record: impl Fn(usize, Criterion) -> Record,
     ) -> ShapeReport {
         let mut report = self.blank_report();
         for &i in segments {
             let [open, violated] = verdict(i);
             for criterion in Criterion::ALL {
-                let of = Faults::of(criterion);
+                let of = Violations::of(criterion);
                 if violated.any(of) {
                     report.counts[criterion as usize].violated += 1;
                     report.violations.push(record(i, criterion));
@@ -271,11 +282,11 @@ impl<'a> Checker<'a> {
     }
 
     /// The parameters between which some conditions are asked.
-    pub(crate) fn interval(&self, segment: usize, faults: Faults) -> [f64; 2] {
+    pub(crate) fn interval(&self, segment: usize, violations: Violations) -> [f64; 2] {
         let [start, end] = [segment, segment + 1].map(|i| self.polygon().parameters()[i]);
-        if Faults::AT_START.contains(faults) {
+        if Violations::AT_START.contains(violations) {
             [start; 2]
-        } else if Faults::AT_END.contains(faults) {
+        } else if Violations::AT_END.contains(violations) {
             [end; 2]
         } else {
             [start, end]
@@ -284,7 +295,7 @@ impl<'a> Checker<'a> {
 
     /// The report that says how often each criterion applies, and nothing else yet.
     pub(crate) fn blank_report(&self) -> ShapeReport {
-        let n = self.calls.len();
+        let n = self.required.len();
         let clean = ShapeReport::clean(n, self.criteria, self.applicable(0..n));
         ShapeReport { straight: self.straight.clone(), ..clean }
     }
@@ -292,19 +303,19 @@ impl<'a> Checker<'a> {
     /// How many of the segments each criterion applies to, in the order of [`Criterion::ALL`].
     #[must_use]
     pub fn applicable(&self, segments: Range<usize>) -> [usize; Criterion::COUNT] {
-        Calls::count(&self.calls[segments])
+        Requirements::count(&self.required[segments])
     }
 
     #[inline]
-    fn situation(&self, i: usize, &Cubic { legs, chord, far }: &Cubic) -> Situation {
+    fn geometry(&self, i: usize, &Cubic { legs, chord, far }: &Cubic) -> SegmentGeometry {
         let [p, q] = self.polygon().binormals(i);
         let [before, after] = self.polygon().binormals_beside(i);
-        Situation::new(legs, chord, [before, p, q, after], far)
+        SegmentGeometry::new(legs, chord, [before, p, q, after], far)
     }
 
     pub(crate) fn cones(&self, i: usize) -> Cones {
         let around = self.polygon().directions_around(i);
-        Cones::new(self.polygon(), i, around, self.calls[i], &self.tolerances())
+        Cones::new(self.polygon(), i, around, self.required[i], &self.tolerances())
     }
 }
 
@@ -321,8 +332,8 @@ where
     Checker::new(polygon, criteria, tolerances).report(legs)
 }
 
-impl Faults {
-    /// The faults of a criterion.
+impl Violations {
+    /// The violations of a criterion.
     #[must_use]
     pub const fn of(criterion: Criterion) -> Self {
         match criterion {

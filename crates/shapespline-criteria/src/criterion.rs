@@ -85,11 +85,11 @@ impl Criteria {
     pub const NONE: Self = Self(0);
     /// The default of a check: all but global convexity, which asks more of a curve than the papers'
     /// algorithms promise.
-    pub const ALL: Self = Self::EVERY.without(Criterion::GlobalConvexity);
-    /// The default of a fit: as [`Criteria::ALL`], but where the points double back the curve may stop.
-    pub const OF_FITS: Self = Self::ALL.without(Criterion::Regular);
+    pub const DEFAULT: Self = Self::ALL.without(Criterion::GlobalConvexity);
+    /// The default of a fit: as [`Criteria::DEFAULT`], but where the points double back the curve may stop.
+    pub const OF_FITS: Self = Self::DEFAULT.without(Criterion::Regular);
     /// Every criterion there is.
-    pub const EVERY: Self = Self(0b1111_1111);
+    pub const ALL: Self = Self(0b1111_1111);
 
     /// Whether the set holds a criterion.
     #[must_use]
@@ -117,7 +117,7 @@ impl Criteria {
 
 impl Default for Criteria {
     fn default() -> Self {
-        Self::ALL
+        Self::DEFAULT
     }
 }
 

@@ -12,12 +12,12 @@
 //! 1(a) and 2(b) are misprints: they accept the mirror image, which turns the wrong way.
 
 use crate::{
-    faults::{Situation, is_positive},
     rounding::{Lean, Rounded},
+    violations::{SegmentGeometry, is_positive},
 };
 
 /// `(a×L)·n` and `(L×c)·n` for both binormal vectors `n`.
-pub(crate) fn chord_turns(s: &Situation) -> [[f64; 2]; 2] {
+pub(crate) fn chord_turns(s: &SegmentGeometry) -> [[f64; 2]; 2] {
     let [start, end] = [s.a.cross(s.chord), s.chord.cross(s.c)];
     [s.p, s.q].map(|n| [start.dot(n), end.dot(n)])
 }

@@ -4,7 +4,7 @@
 //!
 //! The criteria compare each cubic segment with the data polygon around it:
 //!
-//! | criterion | the polygon calls for it when | the segment satisfies it when |
+//! | criterion | the polygon requires it when | the segment satisfies it when |
 //! |---|---|---|
 //! | convexity | `P_m·P_{m+1} > 0` | `ω(u)·P_n > 0` on the segment, `n = m, m+1` |
 //! | inflection | `P_m·P_{m+1} < 0` | `ω·P_m` goes from + to −, `ω·P_{m+1}` from − to +, once |
@@ -22,8 +22,8 @@
 //! |---|---|
 //! | does a cubic of these end legs keep the shape? | [`check`], [`Checker`] |
 //! | does any piecewise Bézier curve? | [`check_curve`], [`CurveChecker`] |
-//! | what of the nodes, and of oscillation about planes (as information)? | [`Checker::notes`], [`CurveChecker::notes`] |
-//! | what do the points themselves call for? | [`polygon_shape`] |
+//! | what of the nodes, and of oscillation about planes (as information)? | [`Checker::node_conditions`], [`CurveChecker::node_conditions`] |
+//! | what do the points themselves require? | [`polygon_shape`] |
 //! | how many inflections are seen, from somewhere or at most? | [`polygon_inflections`], [`curve_inflections`] and their `_from` |
 //!
 //! Notation as in `shapespline_geometry`. Sources: M. I. Karavelas, P. D. Kaklis, Numerical Algorithms
@@ -39,47 +39,47 @@
 //! let polygon = DataPolygon::new(points, &Parametrization::Chordal, Boundary::ZeroCurvature)?;
 //! // Straight segments neither bend nor twist, so the twist of the data is missing.
 //! let straight = |i| [polygon.chord(i) / 3.0; 2];
-//! let report = check(&polygon, straight, Criteria::ALL, Tolerances::default());
+//! let report = check(&polygon, straight, Criteria::DEFAULT, Tolerances::default());
 //! assert_eq!(report.count(Criterion::Torsion).violated, 1);
 //! println!("{report}");
 //! # Ok::<(), shapespline_criteria::geometry::InputError>(())
 //! ```
 
-mod calls;
+mod arbitrary_degree;
+mod batch;
+mod cached;
 mod checker;
 mod cone;
 mod criterion;
-mod faults;
-mod general;
 mod global;
 mod inflections;
 mod margin;
-mod notes;
+mod node_conditions;
 mod polygon_shape;
 mod regular;
 mod report;
+mod requirements;
 mod resolution;
 mod rounding;
-mod stretch;
 mod turning;
-mod window;
+mod violations;
 
-pub use calls::{Calls, separation};
+pub use arbitrary_degree::{CurveChecker, CurveError, INTERPOLATION, check_curve};
+pub use batch::{BatchChecker, BatchRequirements};
+pub use cached::CachedChecker;
 pub use checker::{Checker, check};
 pub use criterion::{Criteria, Criterion, Tolerances};
-pub use faults::Faults;
-pub use general::{CurveChecker, CurveError, INTERPOLATION, check_curve};
 pub use inflections::{
     InflectionCount, curve_inflections, curve_inflections_from, curve_inflections_with,
     polygon_inflections, polygon_inflections_from, polygon_inflections_with,
 };
-pub use notes::{NodeCondition, NodeRecord, Notes, Oscillation};
-pub use polygon_shape::{Extent, PolygonShape, polygon_shape};
+pub use node_conditions::{NodeCondition, NodeConditions, NodeRecord, Oscillation};
+pub use polygon_shape::{AffineDimension, PolygonShape, polygon_shape};
 pub use report::{Count, Record, ShapeReport, Undecided};
+pub use requirements::{Requirements, inflection_parameter};
 /// The points that curves are compared with, and curves of other origin.
 pub use shapespline_geometry as geometry;
-pub use stretch::{StretchCalls, StretchChecker};
-pub use window::WindowChecker;
+pub use violations::Violations;
 
 /// The examples of the README are run as tests.
 #[cfg(doctest)]

@@ -22,11 +22,11 @@ use glam::DVec3;
 use shapespline_geometry::bernstein::{Positivity, quadratic_minimum};
 
 use crate::{
-    Calls,
+    Requirements,
     cone::{Quadratic, inside, part},
-    faults::{Cones, LINE_PART, Situation},
     global::chord_turns,
     turning::conditions,
+    violations::{Cones, LINE_PART, SegmentGeometry},
 };
 
 /// A margin and the local parameter where it is smallest.
@@ -48,12 +48,12 @@ fn ratio(x: f64, size: f64) -> f64 {
 }
 
 /// The sizes of `ω(0)`, of its middle coefficient `a×c`, and of `ω(1)`.
-fn sizes(s: &Situation) -> [f64; 3] {
+fn sizes(s: &SegmentGeometry) -> [f64; 3] {
     let (a, chord, c) = (s.a.length(), s.chord.length(), s.c.length());
     [a * (chord + c), a * c, c * (chord + a)]
 }
 
-pub(crate) fn convexity(s: &Situation) -> Margin {
+pub(crate) fn convexity(s: &SegmentGeometry) -> Margin {
     let [first, middle, last] = sizes(s);
     let of = |n: DVec3| {
         let [alpha, gamma, beta] = s.omega_along(n.normalize_or_zero());
@@ -71,7 +71,7 @@ pub(crate) fn convexity(s: &Situation) -> Margin {
     of(s.p).least(of(s.q))
 }
 
-pub(crate) fn global_convexity(s: &Situation) -> Margin {
+pub(crate) fn global_convexity(s: &SegmentGeometry) -> Margin {
     let chord = s.chord.length();
     let sizes = [s.a.length() * chord, s.c.length() * chord];
     let lengths = [s.p.length(), s.q.length()];
@@ -85,7 +85,7 @@ pub(crate) fn global_convexity(s: &Situation) -> Margin {
     margin
 }
 
-pub(crate) fn inflection(s: &Situation) -> Margin {
+pub(crate) fn inflection(s: &SegmentGeometry) -> Margin {
     let [first, _, last] = s.omega;
     let [start, _, end] = sizes(s);
     let along = |w: DVec3, n: DVec3, size: f64| ratio(w.dot(n.normalize_or_zero()), size);
@@ -93,31 +93,31 @@ pub(crate) fn inflection(s: &Situation) -> Margin {
         .least(Margin { value: (-along(last, s.p, end)).min(along(last, s.q, end)), at: 1.0 })
 }
 
-pub(crate) fn turning(s: &Situation, calls: Calls) -> Margin {
+pub(crate) fn turning(s: &SegmentGeometry, required: Requirements) -> Margin {
     [0, 1]
         .into_iter()
         .flat_map(|end| {
             let of = move |(value, size)| Margin { value: ratio(value, size), at: end as f64 };
-            conditions(s, calls, end).map(of)
+            conditions(s, required, end).map(of)
         })
         .fold(Margin { value: f64::INFINITY, at: 0.0 }, Margin::least)
 }
 
-pub(crate) fn torsion(s: &Situation, calls: Calls) -> Margin {
+pub(crate) fn torsion(s: &SegmentGeometry, required: Requirements) -> Margin {
     let size = s.a.length() * s.chord.length() * s.c.length();
-    let sign = if calls.any(Calls::RIGHT_TORSION) { 1.0 } else { -1.0 };
+    let sign = if required.any(Requirements::RIGHT_TORSION) { 1.0 } else { -1.0 };
     // Its sign is the same all over the segment.
     Margin { value: sign * ratio(s.determinant(), size), at: 0.5 }
 }
 
-pub(crate) fn coplanarity(s: &Situation, calls: Calls, cones: &Cones) -> Margin {
+pub(crate) fn coplanarity(s: &SegmentGeometry, required: Requirements, cones: &Cones) -> Margin {
     let (epsilon, [p, q]) = cones.plane;
     let over = |from: f64, to: f64| {
         let omega = part(s.omega_quadratic(), from, to);
         let margin = |normal| cone_margin(epsilon, normal, (from, to), omega);
         margin(p).least(margin(q))
     };
-    if calls.any(Calls::COPLANARITY) {
+    if required.any(Requirements::COPLANARITY) {
         over(0.0, 1.0)
     } else {
         let [left, right] = cones.parts;
@@ -125,13 +125,13 @@ pub(crate) fn coplanarity(s: &Situation, calls: Calls, cones: &Cones) -> Margin 
     }
 }
 
-pub(crate) fn collinearity(s: &Situation, calls: Calls, cones: &Cones) -> Margin {
+pub(crate) fn collinearity(s: &SegmentGeometry, required: Requirements, cones: &Cones) -> Margin {
     let (epsilon, lines) = cones.line;
     let over = |line: DVec3, from: f64, to: f64| {
         cone_margin(epsilon, line, (from, to), part(s.tangent_quadratic(), from, to))
     };
-    let start = calls.any(Calls::LINE_AT_START).then(|| over(lines[0], 0.0, LINE_PART));
-    let end = calls.any(Calls::LINE_AT_END).then(|| over(lines[1], 1.0 - LINE_PART, 1.0));
+    let start = required.any(Requirements::LINE_AT_START).then(|| over(lines[0], 0.0, LINE_PART));
+    let end = required.any(Requirements::LINE_AT_END).then(|| over(lines[1], 1.0 - LINE_PART, 1.0));
     [start, end]
         .into_iter()
         .flatten()

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
 //! What the points themselves say: chords, binormal vectors, discrete torsion, and what each segment
-//! calls for.
+//! requires.
 
 use glam::DVec3;
 use shapespline_geometry::{DataPolygon, length};
 
-use crate::{Calls, Criteria, Tolerances, resolution::is_straight};
+use crate::{Criteria, Requirements, Tolerances, resolution::is_straight};
 
 /// Whether a polygon lies on a line or in a plane.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
-pub enum Extent {
+pub enum AffineDimension {
     /// All points lie on one line: no criterion but collinearity applies.
     Line,
     /// All points lie in one plane: torsion and coplanarity do not apply.
@@ -21,7 +21,7 @@ pub enum Extent {
     Space,
 }
 
-impl Extent {
+impl AffineDimension {
     /// The name users write.
     #[must_use]
     pub fn name(self) -> &'static str {
@@ -38,7 +38,7 @@ impl Extent {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct PolygonShape {
     /// Whether the points lie on a line or in a plane.
-    pub extent: Extent,
+    pub affine_dimension: AffineDimension,
     /// Chords `L_i`, one a segment.
     pub chords: Vec<DVec3>,
     /// Unit vectors along the binormal vectors `P_i = L_{i−1} × L_i`, one a node; zero where the
@@ -49,8 +49,8 @@ pub struct PolygonShape {
     /// Discrete torsion `Γ_i / (‖P_i‖ ‖P_{i+1}‖)`, one a segment, in reciprocal units of length; NaN
     /// where a binormal vector vanishes.
     pub torsion: Vec<f64>,
-    /// The default criteria that each segment calls for.
-    pub calls: Vec<Criteria>,
+    /// The default criteria that each segment requires.
+    pub required: Vec<Criteria>,
 }
 
 /// The discrete shape of a polygon. Cost O(N).
@@ -73,22 +73,22 @@ pub fn polygon_shape(polygon: &DataPolygon, tolerances: &Tolerances) -> PolygonS
         if known { polygon.discrete_torsion(i) } else { f64::NAN }
     };
     PolygonShape {
-        extent: extent(polygon, zero),
+        affine_dimension: affine_dimension(polygon, zero),
         chords: (0..n).map(|i| polygon.chord(i)).collect(),
         turning_angles: (0..=n)
             .map(|i| (polygon.binormal(i).length(), polygon.directions_at(i)))
             .map(|(sine, [before, after])| sine.atan2(before.dot(after)))
             .collect(),
         torsion: (0..n).map(torsion).collect(),
-        calls: Calls::of_polygon(polygon, tolerances)
+        required: Requirements::of_polygon(polygon, tolerances)
             .into_iter()
-            .map(|calls| calls.only(Criteria::OF_FITS).criteria())
+            .map(|required| required.only(Criteria::OF_FITS).criteria())
             .collect(),
         binormals,
     }
 }
 
-fn extent(polygon: &DataPolygon, zero: f64) -> Extent {
+fn affine_dimension(polygon: &DataPolygon, zero: f64) -> AffineDimension {
     let points = polygon.points();
     let from = |i: usize| points[i] - points[0];
     let size = |v: DVec3| length(v);
@@ -97,16 +97,16 @@ fn extent(polygon: &DataPolygon, zero: f64) -> Extent {
         (0..points.len()).map(from).fold(DVec3::ZERO, |m, v| if size(v) > size(m) { v } else { m });
     let (scale, axis) = (size(far), shapespline_geometry::normalize(far));
     if scale == 0.0 {
-        return Extent::Line;
+        return AffineDimension::Line;
     }
     let across = |i: usize| (from(i) / scale).cross(axis);
     let side = (0..points.len())
         .map(across)
         .fold(DVec3::ZERO, |m, v| if v.length() > m.length() { v } else { m });
     if side.length() <= zero {
-        return Extent::Line;
+        return AffineDimension::Line;
     }
     let normal = side.normalize();
     let off = (0..points.len()).map(|i| (from(i) / scale).dot(normal).abs()).fold(0.0, f64::max);
-    if off <= zero { Extent::Plane } else { Extent::Space }
+    if off <= zero { AffineDimension::Plane } else { AffineDimension::Space }
 }

@@ -18,7 +18,7 @@
 use glam::DVec3;
 use shapespline_geometry::polynomial::{Polynomial, split};
 
-use crate::{Calls, faults::Situation, margin::Margin};
+use crate::{Requirements, margin::Margin, violations::SegmentGeometry};
 
 /// Legs that cancel to this part of their sizes are zero to rounding. Arithmetic alone adds some 64 units in
 /// the last place; the points bring those of their positions, often a thousand chords away from zero:
@@ -52,13 +52,13 @@ pub(crate) fn leads_along([a, c]: [DVec3; 2], chord: DVec3) -> bool {
 }
 
 /// Whether a cubic segment is regular.
-pub(crate) fn is_regular(s: &Situation, calls: Calls) -> bool {
-    leads_along([s.a, s.c], s.chord) || Hodograph::cubic(s, calls).stops_at().is_none()
+pub(crate) fn is_regular(s: &SegmentGeometry, required: Requirements) -> bool {
+    leads_along([s.a, s.c], s.chord) || Hodograph::cubic(s, required).stops_at().is_none()
 }
 
 /// The least `ρ` of a cubic segment; zero where the verdict is that it stops.
-pub(crate) fn margin(s: &Situation, calls: Calls) -> Margin {
-    let hodograph = Hodograph::cubic(s, calls);
+pub(crate) fn margin(s: &SegmentGeometry, required: Requirements) -> Margin {
+    let hodograph = Hodograph::cubic(s, required);
     match hodograph.stops_at() {
         Some(at) => Margin { value: 0.0, at },
         None => hodograph.least(),
@@ -72,10 +72,11 @@ pub(crate) struct Hodograph {
 }
 
 impl Hodograph {
-    fn cubic(s: &Situation, calls: Calls) -> Self {
+    fn cubic(s: &SegmentGeometry, required: Requirements) -> Self {
         let (a, chord, c) = (s.a.length(), s.chord.length(), s.c.length());
         let [first, middle, last] = s.tangent_quadratic();
-        let least = if calls.any(Calls::LEGS) { chord * (NO_LEG / ROUNDING) } else { 0.0 };
+        let least =
+            if required.any(Requirements::LEGS) { chord * (NO_LEG / ROUNDING) } else { 0.0 };
         let end = |leg: f64| leg.max(least);
         Self { legs: vec![first, middle, last], sizes: vec![end(a), a + chord + c, end(c)] }
     }

@@ -12,7 +12,7 @@ pub struct Record {
     pub segment: usize,
     /// The criterion.
     pub criterion: Criterion,
-    /// Whether the polygon calls for it there.
+    /// Whether the polygon requires it there.
     pub applicable: bool,
     /// Whether the curve meets it (true where it does not apply).
     pub satisfied: bool,

@@ -13,50 +13,50 @@
 //!   the plane always.
 
 use glam::DVec3;
-use shapespline_geometry::{DataPolygon, Dimension, Stretch};
+use shapespline_geometry::{DataPolygon, Dimension, SegmentBatch};
 
-use crate::{Calls, Criterion};
+use crate::{Criterion, Requirements};
 
-/// Takes from the calls of a stretch what a resolution cannot know. Places as in [`Calls::of_stretch`].
+/// Takes from the requirements of a batch what a resolution cannot know. Places as in [`Requirements::of_batch`].
 pub(crate) fn leave_known(
     polygon: &DataPolygon,
-    stretch: &Stretch,
+    batch: &SegmentBatch,
     resolution: f64,
-    calls: &mut [Calls; Stretch::ROOM],
+    required: &mut [Requirements; SegmentBatch::ROOM],
 ) {
-    let segments = stretch.segments(polygon);
-    let chord = |j: usize| stretch.chords().get(j);
+    let segments = batch.segments(polygon);
+    let chord = |j: usize| batch.chords().get(j);
     // The node at the end of place j; at ends with a tangent there are no three points.
     let node = |j: usize| {
         let inside = segments.contains(&j) && segments.contains(&(j + 1));
         if inside { Turn::of(chord(j), chord(j + 1), resolution) } else { Turn::GIVEN }
     };
     let planar = polygon.dimension() == Dimension::Two;
-    for j in segments.start.max(2)..segments.end.min(stretch.places() - 2) {
+    for j in segments.start.max(2)..segments.end.min(batch.places() - 2) {
         let nodes = [j - 2, j - 1, j, j + 1].map(node);
-        let binormal = |k: usize| stretch.binormals().get(j - 2 + k);
+        let binormal = |k: usize| batch.binormals().get(j - 2 + k);
         let known = |k: usize| {
             let [one, other] = [nodes[k], nodes[k + 1]];
             let agree = || one.agrees_clearly(other, binormal(k), binormal(k + 1));
             !one.is_straight && !other.is_straight && (planar || agree())
         };
-        let mut kept = calls[j];
-        let mut leave_out = |what: bool, calls: Calls| {
-            kept = if what { kept.without(calls) } else { kept };
+        let mut kept = required[j];
+        let mut leave_out = |what: bool, required: Requirements| {
+            kept = if what { kept.without(required) } else { kept };
         };
-        leave_out(nodes[1].is_straight, Calls::AT_START);
-        leave_out(nodes[2].is_straight, Calls::AT_END);
-        leave_out(!known(0), Calls::TURNING_BEFORE);
-        leave_out(!known(1), Calls::PAIR);
-        leave_out(!known(2), Calls::TURNING_AFTER);
+        leave_out(nodes[1].is_straight, Requirements::AT_START);
+        leave_out(nodes[2].is_straight, Requirements::AT_END);
+        leave_out(!known(0), Requirements::TURNING_BEFORE);
+        leave_out(!known(1), Requirements::PAIR);
+        leave_out(!known(2), Requirements::TURNING_AFTER);
         let straight = nodes[1].is_straight || nodes[2].is_straight;
         let flat = || {
             let four = (j - 1..=j + 1).all(|k| segments.contains(&k));
             four && width_of_four([j - 1, j, j + 1].map(chord)) <= 2.0 * resolution
         };
-        leave_out(straight || flat(), Calls::of(Criterion::Torsion));
-        leave_out(straight || !known(1) || flat(), Calls::of(Criterion::Coplanarity));
-        calls[j] = kept;
+        leave_out(straight || flat(), Requirements::of(Criterion::Torsion));
+        leave_out(straight || !known(1) || flat(), Requirements::of(Criterion::Coplanarity));
+        required[j] = kept;
     }
 }
 

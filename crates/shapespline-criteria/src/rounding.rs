@@ -19,7 +19,7 @@
 
 use glam::DVec3;
 
-use crate::faults::Situation;
+use crate::violations::SegmentGeometry;
 
 /// Half the distance from one to the next number.
 pub(crate) const UNIT: f64 = 0.5 * f64::EPSILON;
@@ -149,7 +149,7 @@ pub(crate) struct Signs {
 impl Signs {
     /// As far as they are clear of coarse bounds.
     #[inline(always)]
-    pub(crate) fn coarse(s: &Situation) -> Self {
+    pub(crate) fn coarse(s: &SegmentGeometry) -> Self {
         let size = sum(s.a) + sum(s.chord) + sum(s.c);
         let binormals = [sum(s.before), sum(s.p), sum(s.q), sum(s.after)];
         let Coarse { turns: [o, p, q, r], twist } = Coarse::new(size, s.slack, binormals);
@@ -167,14 +167,14 @@ impl Signs {
     }
 
     /// As exactly as is known.
-    pub(crate) fn fine(s: &Situation) -> Self {
+    pub(crate) fn fine(s: &SegmentGeometry) -> Self {
         let [start, end] = [s.omega_signs(s.before)[0], s.omega_signs(s.after)[2]];
         let omega = [s.omega_signs(s.p), s.omega_signs(s.q)];
         Self { omega, beside: [start, end], twist: s.rounded_determinant() }
     }
 }
 
-impl Situation {
+impl SegmentGeometry {
     /// `A, Λ, C`, enlarged.
     #[inline(always)]
     fn sums(&self) -> [f64; 3] {

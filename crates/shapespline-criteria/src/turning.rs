@@ -16,39 +16,46 @@
 
 use glam::DVec3;
 
-use crate::{Calls, faults::Situation};
+use crate::{Requirements, violations::SegmentGeometry};
 
 /// A product that has to be positive, and the largest value that it could have.
 pub(crate) type Condition = (f64, f64);
 
 /// What is asked at the start (0) or at the end (1) of a segment.
 pub(crate) fn conditions(
-    s: &Situation,
-    calls: Calls,
+    s: &SegmentGeometry,
+    required: Requirements,
     end: usize,
 ) -> impl Iterator<Item = Condition> {
-    let Situation { a, c, chord, omega, p, q, .. } = *s;
+    let SegmentGeometry { a, c, chord, omega, p, q, .. } = *s;
     let at_start = end == 0;
     let (own, other, beside) = if at_start { (p, q, s.before) } else { (q, p, s.after) };
     let (asked, alike, apart) = if at_start {
-        (Calls::TURNING_AT_START, Calls::BEFORE_ALIKE, Calls::BEFORE_APART)
+        (Requirements::TURNING_AT_START, Requirements::BEFORE_ALIKE, Requirements::BEFORE_APART)
     } else {
-        (Calls::TURNING_AT_END, Calls::AFTER_ALIKE, Calls::AFTER_APART)
+        (Requirements::TURNING_AT_END, Requirements::AFTER_ALIKE, Requirements::AFTER_APART)
     };
     let (leg, far) = if at_start { (a.length(), c.length()) } else { (c.length(), a.length()) };
     let (bend, side) =
         if at_start { (omega[0], a.cross(chord)) } else { (omega[2], chord.cross(c)) };
     let size = leg * (chord.length() + far);
     let along = move |n: DVec3, sign: f64| (sign * bend.dot(n), size * n.length());
-    let sign = move |alike: Calls, apart: Calls| {
-        f64::from(i8::from(calls.any(alike)) - i8::from(calls.any(apart)))
+    let sign = move |alike: Requirements, apart: Requirements| {
+        f64::from(i8::from(required.any(alike)) - i8::from(required.any(apart)))
     };
     let turns = [
-        (own, f64::from(u8::from(calls.any(asked)))),
-        (other, if calls.any(asked) { sign(Calls::TURNS_ALIKE, Calls::TURNS_APART) } else { 0.0 }),
+        (own, f64::from(u8::from(required.any(asked)))),
+        (
+            other,
+            if required.any(asked) {
+                sign(Requirements::TURNS_ALIKE, Requirements::TURNS_APART)
+            } else {
+                0.0
+            },
+        ),
         (beside, sign(alike, apart)),
     ];
     let between = (side.dot(own), leg * chord.length() * own.length());
     let turns = turns.into_iter().filter(|(_, sign)| *sign != 0.0).map(move |(n, s)| along(n, s));
-    turns.chain(calls.any(asked).then_some(between))
+    turns.chain(required.any(asked).then_some(between))
 }

@@ -4,7 +4,7 @@
 
 use std::borrow::Cow;
 
-use shapespline_criteria::{Calls, Checker};
+use shapespline_criteria::{Checker, Requirements};
 use shapespline_geometry::{
     Boundary, DVec3, DataPolygon, InputError, Parametrization, length, normalize,
 };
@@ -90,15 +90,17 @@ impl Constraints {
         checker: &Checker<'_>,
         runs: &Runs,
     ) -> Result<(), InputError> {
-        let (polygon, calls) = (checker.polygon(), checker.calls());
+        let (polygon, required) = (checker.polygon(), checker.requirements());
         let n = polygon.segments();
         for &(node, vector) in &self.tangents {
             if let Some(line) = runs.line(node) {
                 refuse_off_line(node, normalize(vector), line)?;
                 continue;
             }
-            let [before, after] = [(node + n - 1) % n, node % n].map(|i| calls[i]);
-            if !before.any(Calls::TURNING_AT_END) && !after.any(Calls::TURNING_AT_START) {
+            let [before, after] = [(node + n - 1) % n, node % n].map(|i| required[i]);
+            if !before.any(Requirements::TURNING_AT_END)
+                && !after.any(Requirements::TURNING_AT_START)
+            {
                 continue;
             }
             let ([u, v], d) = (polygon.directions_at(node), normalize(vector));

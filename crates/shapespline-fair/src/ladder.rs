@@ -126,8 +126,8 @@ impl Found<'_> {
     /// The segments in which the plain cubic fails.
     pub(crate) fn failing(&self, demands: &Demands<'_>) -> Vec<usize> {
         let checker = demands.checker;
-        let faults = checker.all_faults(|i| self.plain.legs(i));
-        let mut failing: Vec<usize> = faults.into_iter().map(|(i, _)| i).collect();
+        let violations = checker.all_unproved(|i| self.plain.legs(i));
+        let mut failing: Vec<usize> = violations.into_iter().map(|(i, _)| i).collect();
         let constraints = demands.constraints;
         let straight = !demands.runs.segments.is_empty();
         if constraints.max_deviation.is_some() || !constraints.tangents.is_empty() || straight {
@@ -338,7 +338,7 @@ fn unproved(demands: &Demands<'_>, chain: &Chain) -> Vec<usize> {
         let ends = ends_of(demands, i);
         let pieces = Pieces::of(span, &chain.legs(k), demands.units, ends);
         let parts = pieces.parts(ends);
-        !demands.checker.unproved(i, &parts).is_empty() || deviates(demands, i, &parts)
+        !demands.checker.unproved_pieces(i, &parts).is_empty() || deviates(demands, i, &parts)
     };
     let open = (0..chain.segments.len()).filter(open);
     open.map(|k| index(chain, k, segments)).collect()

@@ -3,7 +3,7 @@
 //! What the data ask of each segment: chords, normals, signs, in units of mean chord and mean speed one.
 
 use glam::DVec3;
-use shapespline_criteria::{Calls, Checker, separation};
+use shapespline_criteria::{Checker, Requirements, inflection_parameter};
 use shapespline_geometry::{DataPolygon, Dimension, length, normalize};
 
 use crate::{Constraints, cubic::sum, element::Span, energy::Energy, runs::Runs};
@@ -111,10 +111,10 @@ impl Demands<'_> {
 
     /// Whether a segment is convex, inflects, or neither.
     pub(crate) fn bend(&self, i: usize) -> Bend {
-        let calls = self.checker.calls()[i];
-        if calls.any(Calls::CONVEXITY) {
+        let required = self.checker.requirements()[i];
+        if required.any(Requirements::CONVEXITY) {
             Bend::Convex
-        } else if calls.any(Calls::INFLECTION) {
+        } else if required.any(Requirements::INFLECTION) {
             Bend::Inflecting
         } else {
             Bend::Free
@@ -123,14 +123,14 @@ impl Demands<'_> {
 
     /// Whether the sign of `ω` at one end of a segment along the binormal of the other is asked for.
     pub(crate) fn asks_pair(&self, i: usize) -> bool {
-        self.bend(i) != Bend::Free || self.checker.calls()[i].any(Calls::TURNING_PAIR)
+        self.bend(i) != Bend::Free || self.checker.requirements()[i].any(Requirements::TURNING_PAIR)
     }
 
     /// Sign of the torsion asked for, or 0.
     pub(crate) fn torsion(&self, i: usize) -> f64 {
-        let calls = self.checker.calls()[i];
-        f64::from(u8::from(calls.any(Calls::RIGHT_TORSION)))
-            - f64::from(u8::from(calls.any(Calls::LEFT_TORSION)))
+        let required = self.checker.requirements()[i];
+        f64::from(u8::from(required.any(Requirements::RIGHT_TORSION)))
+            - f64::from(u8::from(required.any(Requirements::LEFT_TORSION)))
     }
 
     /// `det` of the unit chords around a segment.
@@ -140,12 +140,13 @@ impl Demands<'_> {
 
     /// Whether coplanarity is asked for.
     pub(crate) fn is_coplanar(&self, i: usize) -> bool {
-        self.checker.calls()[i].any(Calls::COPLANARITY.and(Calls::SPLIT_COPLANARITY))
+        self.checker.requirements()[i]
+            .any(Requirements::COPLANARITY.and(Requirements::SPLIT_COPLANARITY))
     }
 
     /// Whether coplanarity is asked for on both sides of an inflection.
     pub(crate) fn is_split(&self, i: usize) -> bool {
-        self.checker.calls()[i].any(Calls::SPLIT_COPLANARITY)
+        self.checker.requirements()[i].any(Requirements::SPLIT_COPLANARITY)
     }
 
     /// How far control points of a segment may lie from its chord, over the chord's length.
@@ -156,7 +157,7 @@ impl Demands<'_> {
 
     pub(crate) fn segment(&self, i: usize) -> Segment {
         let polygon = self.checker.polygon();
-        let calls = self.checker.calls()[i];
+        let required = self.checker.requirements()[i];
         let n = polygon.segments();
         let [p, q] = polygon.binormals(i);
         let [before, own, after] = polygon.directions_around(i);
@@ -193,8 +194,9 @@ impl Demands<'_> {
             planar: polygon.dimension() == Dimension::Two,
             sines: [p.length(), q.length()],
             straight: lines.map(|line| line.is_some()),
-            turns: [Calls::TURNING_AT_START, Calls::TURNING_AT_END].map(|at| calls.any(at)),
-            pair: if bend == Bend::Free && calls.any(Calls::TURNING_PAIR) {
+            turns: [Requirements::TURNING_AT_START, Requirements::TURNING_AT_END]
+                .map(|at| required.any(at)),
+            pair: if bend == Bend::Free && required.any(Requirements::TURNING_PAIR) {
                 p.dot(q).signum()
             } else {
                 0.0
@@ -206,12 +208,15 @@ impl Demands<'_> {
                 lines[1].unwrap_or_else(|| forward(i + 1, given[1], [own, after])),
             ],
             plane: if self.is_split(i) {
-                let at = separation(polygon, i);
+                let at = inflection_parameter(polygon, i);
                 Some([0.5 * at, 0.5 * (1.0 + at)])
             } else {
-                calls.any(Calls::COPLANARITY).then_some([1.0, 1.0])
+                required.any(Requirements::COPLANARITY).then_some([1.0, 1.0])
             },
-            line: [calls.any(Calls::LINE_AT_START), calls.any(Calls::LINE_AT_END)],
+            line: [
+                required.any(Requirements::LINE_AT_START),
+                required.any(Requirements::LINE_AT_END),
+            ],
             deviation: self.deviation(i),
             speed: FORWARD,
             energy: Energy::Parametric,

@@ -221,7 +221,7 @@ mod tests {
 
     /// The whole curve with all nodes at the start.
     fn started(polygon: &DataPolygon) -> Chain {
-        let checker = Checker::new(polygon, Criteria::ALL, Tolerances::default());
+        let checker = Checker::new(polygon, Criteria::DEFAULT, Tolerances::default());
         let (units, constraints) = (Units::of(polygon), &Constraints::default());
         let runs = &Runs::default();
         let demands = Demands { checker: &checker, units, constraints, runs };

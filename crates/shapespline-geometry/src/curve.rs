@@ -42,7 +42,7 @@ pub trait Curve: Send + Sync {
     /// # Errors
     /// An order the curve does not have.
     fn evaluate_many(&self, u: &[f64], order: usize, side: Side) -> Result<Vec<f64>, InputError> {
-        let mut out = vec![0.0; u.len() * self.cubic().dimension().len()];
+        let mut out = vec![0.0; u.len() * self.cubic().dimension().count()];
         self.evaluate_into(u, order, side, &mut out)?;
         Ok(out)
     }

@@ -21,7 +21,7 @@ impl Coordinates {
     /// The coordinates that were given.
     #[must_use]
     pub fn to_vec(self) -> Vec<f64> {
-        self.vector.to_array()[..self.dimension.len()].to_vec()
+        self.vector.to_array()[..self.dimension.count()].to_vec()
     }
 }
 

@@ -32,17 +32,16 @@
 //! ```
 
 mod arc_length;
-mod batch;
 pub mod bernstein;
 mod boundary;
 mod bspline;
 mod curve;
 mod error;
+mod evaluate_many;
 mod fairness;
 mod frame;
 mod input;
 mod locate;
-mod monotone;
 mod parametrization;
 mod piecewise;
 mod piecewise_bezier;
@@ -50,9 +49,10 @@ mod polygon;
 pub mod polynomial;
 mod quadrature;
 mod ragged;
+mod reparametrization;
 mod reparametrized;
 mod segment;
-mod stretch;
+mod segment_batch;
 mod vector;
 
 pub use arc_length::ArcLength;
@@ -66,16 +66,16 @@ pub use frame::Frame;
 pub use glam::{DVec3, DVec4};
 pub use input::{InputMap, InputPoints, Repeated};
 pub use locate::{Locator, Side};
-pub use monotone::MonotoneCubic;
 pub use parametrization::Parametrization;
 pub use piecewise::{Domain, PiecewiseCubic};
 pub use piecewise_bezier::{BezierPart, PiecewiseBezier};
 pub use polygon::{DataPolygon, Dimension, Span, ends_agree};
 pub use ragged::Ragged;
+pub use reparametrization::MonotoneCubic;
 pub use reparametrized::ReparametrizedCubic;
 pub use segment::CubicSegment;
-pub use stretch::{Lanes, Stretch};
-pub use vector::{length, near_one, normalize};
+pub use segment_batch::{SegmentBatch, VectorLanes};
+pub use vector::{length, normalize, normalized_scale};
 
 /// The examples of the README are run as tests.
 #[cfg(doctest)]

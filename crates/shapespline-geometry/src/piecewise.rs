@@ -133,7 +133,7 @@ impl PiecewiseCubic {
         Ok(Self::through_checked(polygon, legs))
     }
 
-    /// [`Self::through`] for legs that [have room](crate::Lanes::have_room), as was found while they
+    /// [`Self::through`] for legs that [have room](crate::VectorLanes::have_room), as was found while they
     /// were made: long ones are not read from memory once more.
     #[must_use]
     pub fn through_checked(polygon: DataPolygon, legs: Vec<[DVec3; 2]>) -> Self {

@@ -28,7 +28,7 @@ pub enum Dimension {
 impl Dimension {
     /// The number of coordinates.
     #[must_use]
-    pub fn len(self) -> usize {
+    pub fn count(self) -> usize {
         match self {
             Self::Two => 2,
             Self::Three => 3,

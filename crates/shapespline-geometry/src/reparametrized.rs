@@ -6,8 +6,8 @@ use glam::DVec3;
 
 use crate::{
     Curve, InputError, MonotoneCubic, PiecewiseCubic, Side,
-    batch::{Evaluate, Locals, check_rows},
-    monotone::Batch,
+    evaluate_many::{Evaluate, Locals, check_rows},
+    reparametrization::Batch,
 };
 
 /// The image of a piecewise cubic `C`, run through as `Q(s) = C(t(s))`, where on each segment

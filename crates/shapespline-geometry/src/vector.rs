@@ -41,7 +41,7 @@ pub fn normalize(v: DVec3) -> DVec3 {
 /// Legs and chord of a segment, scaled so that products of them neither overflow nor underflow.
 #[inline]
 #[must_use]
-pub fn near_one([a, c]: [DVec3; 2], chord: DVec3) -> ([DVec3; 2], DVec3) {
+pub fn normalized_scale([a, c]: [DVec3; 2], chord: DVec3) -> ([DVec3; 2], DVec3) {
     let size = chord.abs().max_element();
     if (1e-40..1e40).contains(&size) {
         ([a, c], chord)
@@ -54,7 +54,7 @@ pub fn near_one([a, c]: [DVec3; 2], chord: DVec3) -> ([DVec3; 2], DVec3) {
 pub(crate) const ORDINARY: f64 = 1e39;
 
 /// Whether a vector is finite, not zero, and of a size for which [`length`], [`normalize`] and
-/// [`near_one`] need no care. No branch: for loops that look for others among many.
+/// [`normalized_scale`] need no care. No branch: for loops that look for others among many.
 #[inline(always)]
 pub(crate) fn is_ordinary(v: DVec3) -> bool {
     let square = v.length_squared();

@@ -129,12 +129,12 @@ fn tangents_of(object: &Bound<'_, PyAny>, dimension: Dimension) -> PyResult<Vec<
             return Err(must("tangents", &[], "have indices counted from 0", index as f64));
         };
         match numbers("tangents", &value)? {
-            Numbers::Many(v) if v.len() == dimension.len() => {
+            Numbers::Many(v) if v.len() == dimension.count() => {
                 let z = v.get(2).copied().unwrap_or(0.0);
                 Ok((point, DVec3::new(v[0], v[1], z)))
             }
             _ => {
-                let rule = format!("be a vector of {} components", dimension.len());
+                let rule = format!("be a vector of {} components", dimension.count());
                 Err(must("tangents", &[point], &rule, value.str()?.to_string().as_str()))
             }
         }

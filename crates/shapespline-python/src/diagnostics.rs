@@ -40,7 +40,7 @@ pub(crate) struct Search {
 ///     ``"stalled"`` (a criterion fails where tension can rise no further). ``"given"``: there was no
 ///     search.
 /// iterations : int
-///     Checks of the curve while tension was raised, the last one, which found no fault, included.
+///     Checks of the curve while tension was raised, the last one, which found no violation, included.
 /// solves : int
 ///     Solves of the system of tangents, complete or in part.
 /// relaxations : int

@@ -311,11 +311,11 @@ impl Ends {
             Self::Named(boundary) => Ok(boundary),
             Self::Tangents(tangents) if tangents.dimension == dimension => Ok(tangents.boundary()),
             Self::Tangents(tangents) => {
-                let components = tangents.dimension.len();
+                let components = tangents.dimension.count();
                 let text = format!(
                     "boundary: the tangents start and end have {components} components, the points \
                      have {}",
-                    dimension.len()
+                    dimension.count()
                 );
                 Err(invalid("boundary", &[], components, text))
             }

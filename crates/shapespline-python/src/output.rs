@@ -60,7 +60,7 @@ pub(crate) fn vectors<'py>(
     vectors: &[DVec3],
     dimension: Dimension,
 ) -> PyResult<FloatArray<'py>> {
-    let columns = dimension.len();
+    let columns = dimension.count();
     let mut values = Vec::with_capacity(vectors.len() * columns);
     for v in vectors {
         values.extend_from_slice(&v.to_array()[..columns]);

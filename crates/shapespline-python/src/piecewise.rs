@@ -117,7 +117,7 @@ impl PiecewiseBezier {
     }
 
     fn columns(&self) -> usize {
-        self.curve.dimension().len()
+        self.curve.dimension().count()
     }
 }
 

@@ -59,7 +59,7 @@ pub(crate) fn _check_shape(
     let Points { points, dimension } = points;
     let special = constraints::Given::new(corners, None, None, false, dimension)?;
     if dimension != curve.dimension() {
-        let [points, curve] = [dimension, curve.dimension()].map(Dimension::len);
+        let [points, curve] = [dimension, curve.dimension()].map(Dimension::count);
         return Err(subject_error(CurveError::Dimension { points, curve }));
     }
     let given = boundary.map(|ends| ends.of(dimension, closed)).transpose()?;
@@ -253,13 +253,13 @@ pub(crate) fn _polygon_shape<'py>(
         Ok((polygon_shape(&polygon, &tolerances), polygon, map))
     });
     let (shape, polygon, map) = made.map_err(input_error)?;
-    let calls = shape.calls.iter().map(|calls| calls.iter().map(|c| c.name()).collect());
+    let calls = shape.required.iter().map(|criteria| criteria.iter().map(|c| c.name()).collect());
     let calls: Vec<Vec<&str>> = calls.collect();
     let floats = |values| PyArray1::from_vec(py, values);
     let parts = PyDict::new(py);
     parts.set_item("points", vectors(py, &map.points(polygon.points()), dimension)?)?;
     parts.set_item("parameters", floats(map.spread(polygon.parameters())))?;
-    parts.set_item("extent", shape.extent.name())?;
+    parts.set_item("extent", shape.affine_dimension.name())?;
     let chords = map.spread_segments(&shape.chords, &DVec3::ZERO);
     parts.set_item("chords", vectors(py, &chords, dimension)?)?;
     let binormals = map.spread(&shape.binormals);

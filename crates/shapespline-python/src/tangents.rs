@@ -107,7 +107,7 @@ impl Tangents {
         let end = end.map(|object| tangent("end", object)).transpose()?;
         let dimension = match (start, end) {
             (Some((_, own)), Some((_, other))) if own != other => {
-                let [start, end] = [own, other].map(Dimension::len);
+                let [start, end] = [own, other].map(Dimension::count);
                 let text = format!(
                     "start and end must have the same number of components, got {start} and {end}"
                 );
@@ -127,18 +127,18 @@ impl Tangents {
     /// The tangent at the first point, shape (dim,), or ``None``; a fresh array.
     #[getter]
     fn start<'py>(&self, py: Python<'py>) -> Option<FloatArray<'py>> {
-        self.start.map(|tangent| vector(py, tangent, self.dimension.len()))
+        self.start.map(|tangent| vector(py, tangent, self.dimension.count()))
     }
 
     /// The tangent at the last point, shape (dim,), or ``None``; a fresh array.
     #[getter]
     fn end<'py>(&self, py: Python<'py>) -> Option<FloatArray<'py>> {
-        self.end.map(|tangent| vector(py, tangent, self.dimension.len()))
+        self.end.map(|tangent| vector(py, tangent, self.dimension.count()))
     }
 
     fn __repr__(&self) -> String {
         let shown = |tangent: Option<DVec3>| match tangent {
-            Some(v) => format!("{:?}", &v.to_array()[..self.dimension.len()]),
+            Some(v) => format!("{:?}", &v.to_array()[..self.dimension.count()]),
             None => "None".to_owned(),
         };
         format!("Tangents({}, {})", shown(self.start), shown(self.end))

@@ -9,7 +9,7 @@
 
 use std::collections::BTreeMap;
 
-use shapespline_criteria::{Faults, WindowChecker};
+use shapespline_criteria::{CachedChecker, Violations};
 use shapespline_geometry::DVec3;
 
 /// Rounds of raising after which a segment that is still undecided is accepted: tension that doubles has
@@ -34,9 +34,9 @@ impl Doubts {
     }
 
     /// Whether a segment that is not proved to keep the shape is to be mended.
-    pub(crate) fn is_fault(
+    pub(crate) fn is_violation(
         &self,
-        windows: &mut WindowChecker<'_>,
+        windows: &mut CachedChecker<'_>,
         segment: usize,
         legs: [DVec3; 2],
     ) -> bool {
@@ -46,17 +46,17 @@ impl Doubts {
     /// Leaves those of the segments that are not proved to keep the shape that are to be mended.
     pub(crate) fn sift(
         &mut self,
-        windows: &mut WindowChecker<'_>,
-        faults: &mut Vec<(usize, Faults)>,
+        windows: &mut CachedChecker<'_>,
+        violations: &mut Vec<(usize, Violations)>,
         legs: impl Fn(usize) -> [DVec3; 2],
     ) {
-        let fails = |&(i, _): &(usize, Faults)| !windows.failures_at(i, legs(i)).is_empty();
-        let fails: Vec<bool> = faults.iter().map(fails).collect();
+        let fails = |&(i, _): &(usize, Violations)| !windows.failures_at(i, legs(i)).is_empty();
+        let fails: Vec<bool> = violations.iter().map(fails).collect();
         if fails.iter().all(|&fails| fails) {
             return;
         }
         let mut fails = fails.into_iter();
-        faults.retain(|&(segment, _)| {
+        violations.retain(|&(segment, _)| {
             if fails.next() == Some(true) {
                 return true;
             }
@@ -68,12 +68,12 @@ impl Doubts {
     /// Accepts all segments if none of them is violated, where tension can rise no further.
     pub(crate) fn accept(
         &mut self,
-        windows: &mut WindowChecker<'_>,
-        faults: &mut Vec<(usize, Faults)>,
+        windows: &mut CachedChecker<'_>,
+        violations: &mut Vec<(usize, Violations)>,
         legs: impl Fn(usize) -> [DVec3; 2],
     ) {
-        if faults.iter().all(|&(i, _)| windows.violations_at(i, legs(i)).is_empty()) {
-            self.rounds.extend(faults.drain(..).map(|(i, _)| (i, ROUNDS + 1)));
+        if violations.iter().all(|&(i, _)| windows.violations_at(i, legs(i)).is_empty()) {
+            self.rounds.extend(violations.drain(..).map(|(i, _)| (i, ROUNDS + 1)));
         }
     }
 }

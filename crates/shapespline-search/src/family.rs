@@ -86,7 +86,7 @@ pub trait TensionFamily: Sync {
     fn end_legs(&self, segment: usize) -> [DVec3; 2];
 
     /// Tension in units in which equal pulls at the two nodes of an inflecting coplanar segment put
-    /// its inflection where [`shapespline_criteria::separation`] says, in the limit: there the rule
+    /// its inflection where [`shapespline_criteria::inflection_parameter`] says, in the limit: there the rule
     /// (5.65) of paper 001 keeps `tension / unit` equal. One for ν-splines, for which (5.9) was
     /// derived.
     fn tension_unit(&self, _node: usize) -> f64 {

@@ -2,7 +2,7 @@
 
 //! Fewer criteria never make a curve that bends more.
 //!
-//! Tension that only a further criterion would have called for can leave the curve fairer than less tension
+//! Tension that only a further criterion would have required can leave the curve fairer than less tension
 //! elsewhere. So where a search for fewer criteria than usual had to raise any, the curve that keeps all
 //! of them is found as well, and of the two the one that bends less is kept.
 

@@ -3,7 +3,7 @@
 //! Violations that travel: in long regular data every raise can break the next segment, and that one
 //! the next. What the front has done so far is then done at once as far ahead as it has come.
 
-use shapespline_criteria::Faults;
+use shapespline_criteria::Violations;
 use shapespline_geometry::DataPolygon;
 
 use crate::pattern::{Ring, TensionPattern};
@@ -25,7 +25,7 @@ const ALIKE: f64 = 1e-3;
 struct Event {
     /// 0 is never.
     round: usize,
-    faults: Faults,
+    violations: Violations,
     /// Whether tension was raised there because a front was expected.
     ahead: bool,
 }
@@ -34,7 +34,7 @@ impl Event {
     /// Whether a front can have come from another event to this one.
     fn follows(&self, other: &Self) -> bool {
         let earlier = other.round < self.round || (self.ahead && other.round == self.round);
-        other.round > 0 && other.faults == self.faults && earlier
+        other.round > 0 && other.violations == self.violations && earlier
     }
 }
 
@@ -45,14 +45,14 @@ pub(crate) struct Fronts {
     /// One per segment, from [`FIRST_ROUND`] on.
     events: Vec<Event>,
     /// The segments that failed in the last round, and how.
-    before: Vec<(usize, Faults)>,
+    before: Vec<(usize, Violations)>,
 }
 
 /// A front that has come to a segment.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Front {
     segment: usize,
-    faults: Faults,
+    violations: Violations,
     /// The way of one round; negative towards the first segment.
     way: isize,
     /// How often the tension of the last place is repeated, from this one on.
@@ -63,7 +63,7 @@ impl Front {
     /// Pairs of nodes: one that was raised at the last place, and the one in its stead here or ahead.
     pub(crate) fn nodes(self, polygon: &DataPolygon) -> impl Iterator<Item = [usize; 2]> {
         let ring = Ring::of(polygon, polygon.nodes());
-        let pattern = TensionPattern::of(self.faults);
+        let pattern = TensionPattern::of(self.violations);
         (0..self.repeats).flat_map(move |k| {
             pattern.offsets().filter_map(move |offset| {
                 let last = ring.moved(self.segment, offset - self.way)?;
@@ -75,20 +75,24 @@ impl Front {
 
 impl Fronts {
     /// The fronts in a round of raising, given the segments that fail in it (ascending).
-    pub(crate) fn find(&mut self, faults: &[(usize, Faults)], polygon: &DataPolygon) -> Vec<Front> {
+    pub(crate) fn find(
+        &mut self,
+        violations: &[(usize, Violations)],
+        polygon: &DataPolygon,
+    ) -> Vec<Front> {
         self.round += 1;
         if self.round < FIRST_ROUND {
             return Vec::new();
         }
         self.events.resize(polygon.segments(), Event::default());
-        let before = std::mem::replace(&mut self.before, faults.to_vec());
-        let begins = |fault: &&(usize, Faults)| {
-            self.round > FIRST_ROUND && before.binary_search_by_key(&fault.0, |b| b.0).is_err()
+        let before = std::mem::replace(&mut self.before, violations.to_vec());
+        let begins = |violation: &&(usize, Violations)| {
+            self.round > FIRST_ROUND && before.binary_search_by_key(&violation.0, |b| b.0).is_err()
         };
-        let fresh: Vec<_> = faults.iter().filter(begins).collect();
+        let fresh: Vec<_> = violations.iter().filter(begins).collect();
         let mut fronts = Vec::new();
-        for &&(segment, faults) in &fresh {
-            let event = Event { round: self.round, faults, ahead: false };
+        for &&(segment, violations) in &fresh {
+            let event = Event { round: self.round, violations, ahead: false };
             fronts.extend(self.front(segment, event, polygon));
             self.events[segment] = event;
         }
@@ -96,7 +100,8 @@ impl Fronts {
             let ring = Ring::of(polygon, polygon.segments());
             for k in 1..front.repeats as isize {
                 if let Some(ahead) = ring.moved(front.segment, front.way * k) {
-                    let event = Event { round: self.round, faults: front.faults, ahead: true };
+                    let event =
+                        Event { round: self.round, violations: front.violations, ahead: true };
                     self.events[ahead] = event;
                 }
             }
@@ -118,7 +123,12 @@ impl Fronts {
         let ways = (1..=LONGEST).flat_map(|way| [way, -way]);
         let (way, come) = ways.map(|way| (way, come(way))).find(|(_, come)| *come >= WAYS)?;
         let ahead = repeats_ahead(polygon, segment, way, come);
-        (ahead > 0).then_some(Front { segment, faults: event.faults, way, repeats: 1 + ahead })
+        (ahead > 0).then_some(Front {
+            segment,
+            violations: event.violations,
+            way,
+            repeats: 1 + ahead,
+        })
     }
 }
 
@@ -171,17 +181,17 @@ mod tests {
         DataPolygon::new(points, &Parametrization::Uniform, boundary).unwrap()
     }
 
-    const FAULT: Faults = Faults::TORSION;
+    const VIOLATIONS: Violations = Violations::TORSION;
 
     /// Runs rounds in which one segment each fails, after as many quiet ones as are waited for.
     fn run(polygon: &DataPolygon, failing: &[usize]) -> Vec<Vec<Front>> {
         let mut fronts = Fronts::default();
         (0..FIRST_ROUND).for_each(|_| assert!(fronts.find(&[], polygon).is_empty()));
-        failing.iter().map(|&m| fronts.find(&[(m, FAULT)], polygon)).collect()
+        failing.iter().map(|&m| fronts.find(&[(m, VIOLATIONS)], polygon)).collect()
     }
 
     fn front(segment: usize, way: isize, repeats: usize) -> Vec<Front> {
-        vec![Front { segment, faults: FAULT, way, repeats }]
+        vec![Front { segment, violations: VIOLATIONS, way, repeats }]
     }
 
     #[test]
@@ -211,7 +221,8 @@ mod tests {
     #[test]
     fn nodes_answer_to_those_of_the_last_place() {
         let polygon = stairs(Boundary::ZeroCurvature);
-        let front = Front { segment: 13, faults: Faults::CONVEXITY_AT_START, way: 3, repeats: 2 };
+        let front =
+            Front { segment: 13, violations: Violations::CONVEXITY_AT_START, way: 3, repeats: 2 };
         let nodes: Vec<_> = front.nodes(&polygon).collect();
         assert_eq!(nodes, [[9, 12], [11, 14], [9, 15], [11, 17]]);
     }

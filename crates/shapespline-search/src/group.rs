@@ -121,7 +121,7 @@ impl Group {
     fn breaks_near<F: TensionFamily>(&self, state: &mut State<'_, F>) -> bool {
         let nodes = self.full.iter().map(|(k, _)| k / F::SIDES);
         let near = segments_around(state.windows.polygon(), nodes, REACH);
-        state.has_faults_among(&near)
+        state.has_violations_among(&near)
     }
 
     /// The least factor, beyond one that breaks a criterion, that seems to keep them all as far as segments

@@ -11,13 +11,13 @@
 //! criteria allow, for growth overshoots.
 //!
 //! **Guarantee.** A search that ends with [`Status::Solved`] ends with a complete solve and a complete
-//! check that found no fault. Convergence rests on the asymptotic theorems of the family (paper 001,
+//! check that found no violation. Convergence rests on the asymptotic theorems of the family (paper 001,
 //! Lemmas 5.4–5.9; paper 000, Lemmas 4.1–4.3). A search ends without a solution where a segment fails
 //! though no tension around it can rise any further ([`Status::Stalled`]), and at the caller's limit.
 //!
 //! **Cost.** One full solve and check first and last; between them the cost follows the number of
 //! violations, not the length of the curve. Where a violation travels through regular data, a segment a
-//! round, the tension it has called for so far is set at once as far ahead as it has come, so that a
+//! round, the tension it has required so far is set at once as far ahead as it has come, so that a
 //! regular run takes as many rounds as its length has binary digits.
 //!
 //! Source: M. I. Karavelas, P. D. Kaklis, Numerical Algorithms 23 (2000), section 5.2 (algorithm

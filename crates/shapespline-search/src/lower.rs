@@ -46,7 +46,7 @@ const BENDING_SLACK: f64 = 1e-3;
 /// Groups tried between two calls of the monitor.
 const BETWEEN_CALLS: usize = 64;
 
-/// Lowers the tensions of a curve without faults as far as that leaves it without faults.
+/// Lowers the tensions of a curve without violations as far as no violation appears.
 pub(crate) fn lower<F: TensionFamily>(state: &mut State<'_, F>) -> Result<(), F::Error> {
     let raised: Vec<usize> = positive(state.family.tension()).collect();
     let polygon = state.windows.polygon();

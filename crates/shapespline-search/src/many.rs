@@ -81,7 +81,7 @@ impl Collection<'_> {
 }
 
 /// Fits every curve of a collection, in parallel. What `fit` makes of a polygon may be a curve of any
-/// family, with or without a search; the fault of one curve leaves the others as they are.
+/// family, with or without a search; the error of one curve leaves the others as they are.
 ///
 /// `threads`: `None` takes rayon's pool as it is. Results are in the order of the rows, and do not
 /// depend on the number of threads.

@@ -2,7 +2,7 @@
 
 //! What a search did.
 
-use shapespline_criteria::{Faults, ShapeReport};
+use shapespline_criteria::{ShapeReport, Violations};
 use shapespline_geometry::DVec3;
 
 /// How a search ended.
@@ -52,7 +52,7 @@ pub struct Step {
 pub struct Diagnostics {
     /// How the search ended.
     pub status: Status,
-    /// Checks of the curve while raising, the last one (that found no fault) included.
+    /// Checks of the curve while raising, the last one (that found no violation) included.
     pub iterations: usize,
     /// Solves, complete or in part.
     pub solves: usize,
@@ -69,20 +69,20 @@ pub struct Outcome {
     pub diagnostics: Diagnostics,
     /// The steps in order.
     pub history: Vec<Step>,
-    /// Segments that fail still, with their faults: empty when solved.
-    pub faults: Vec<(usize, Faults)>,
+    /// Segments that fail still, with their violations: empty when solved.
+    pub violations: Vec<(usize, Violations)>,
     /// Segments of which rounding hides whether they keep the shape: tension did not help.
     pub undecided: Vec<usize>,
 }
 
 impl Outcome {
-    /// The outcome of a first check that found no fault.
+    /// The outcome of a first check that found no violation.
     #[must_use]
     pub fn solved() -> Self {
         let status = Status::Solved;
         let diagnostics =
             Diagnostics { status, iterations: 1, solves: 1, relaxations: 0, nodes_changed: 0 };
-        Self { diagnostics, history: Vec::new(), faults: Vec::new(), undecided: Vec::new() }
+        Self { diagnostics, history: Vec::new(), violations: Vec::new(), undecided: Vec::new() }
     }
 }
 

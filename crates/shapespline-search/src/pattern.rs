@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Which tensions mend which fault: the increase patterns of paper 001, (5.58)–(5.60).
+//! Which tensions mend which violation: the increase patterns of paper 001, (5.58)–(5.60).
 
-use shapespline_criteria::Faults;
+use shapespline_criteria::Violations;
 use shapespline_geometry::DataPolygon;
 
 /// Nodes around segment `m` whose tension is to be raised, as offsets `−1, 0, 1, 2` from `m`.
@@ -15,38 +15,40 @@ pub struct TensionPattern {
 }
 
 impl TensionPattern {
-    /// The pattern that mends the faults of a segment.
+    /// The pattern that mends the violations of a segment.
     ///
-    /// A fault between the nodes, of global convexity, of torsion, or of a split coplanarity needs all
+    /// A violation between the nodes, of global convexity, of torsion, or of a split coplanarity needs all
     /// four nodes; one at node m needs its neighbours m−1 and m+1 (Lemma 5.4), one at node m+1 needs m and m+2; the
-    /// inflection conditions are conditions at the nodes, and so is turning (paper 000, Lemma 4.2). A fault
+    /// inflection conditions are conditions at the nodes, and so is turning (paper 000, Lemma 4.2). A violation
     /// of collinearity away from its node needs the two nodes of that segment, or all three nodes around
     /// (Lemma 5.9). A segment on which the curve stops needs shorter legs: its two nodes.
     #[must_use]
-    pub fn of(faults: Faults) -> Self {
-        const ALL: Faults = Faults::CONVEXITY_BETWEEN
-            .and(Faults::GLOBAL_CONVEXITY)
-            .and(Faults::TORSION)
-            .and(Faults::COPLANARITY_BETWEEN)
-            .and(Faults::COPLANARITY_SPLIT);
-        const AT_START: Faults = Faults::CONVEXITY_AT_START
-            .and(Faults::INFLECTION_AT_START)
-            .and(Faults::TURNING_AT_START)
-            .and(Faults::COPLANARITY_AT_START)
-            .and(Faults::LINE_AT_START);
-        const AT_END: Faults = Faults::CONVEXITY_AT_END
-            .and(Faults::INFLECTION_AT_END)
-            .and(Faults::TURNING_AT_END)
-            .and(Faults::COPLANARITY_AT_END)
-            .and(Faults::LINE_AT_END);
+    pub fn of(violations: Violations) -> Self {
+        const ALL: Violations = Violations::CONVEXITY_BETWEEN
+            .and(Violations::GLOBAL_CONVEXITY)
+            .and(Violations::TORSION)
+            .and(Violations::COPLANARITY_BETWEEN)
+            .and(Violations::COPLANARITY_SPLIT);
+        const AT_START: Violations = Violations::CONVEXITY_AT_START
+            .and(Violations::INFLECTION_AT_START)
+            .and(Violations::TURNING_AT_START)
+            .and(Violations::COPLANARITY_AT_START)
+            .and(Violations::LINE_AT_START);
+        const AT_END: Violations = Violations::CONVEXITY_AT_END
+            .and(Violations::INFLECTION_AT_END)
+            .and(Violations::TURNING_AT_END)
+            .and(Violations::COPLANARITY_AT_END)
+            .and(Violations::LINE_AT_END);
         // Both nodes of the segment, whichever of its ends the line belongs to.
-        const FAR: Faults =
-            Faults::LINE_AFTER_START.and(Faults::LINE_BEFORE_END).and(Faults::NOT_REGULAR);
+        const FAR: Violations = Violations::LINE_AFTER_START
+            .and(Violations::LINE_BEFORE_END)
+            .and(Violations::NOT_REGULAR);
 
-        let (all, start, end) = (faults.any(ALL), faults.any(AT_START), faults.any(AT_END));
-        let far = faults.any(FAR);
-        let inside_start = faults.any(Faults::LINE_INSIDE_START);
-        let inside_end = faults.any(Faults::LINE_INSIDE_END);
+        let (all, start, end) =
+            (violations.any(ALL), violations.any(AT_START), violations.any(AT_END));
+        let far = violations.any(FAR);
+        let inside_start = violations.any(Violations::LINE_INSIDE_START);
+        let inside_end = violations.any(Violations::LINE_INSIDE_END);
         Self {
             raise: [
                 all || start || inside_start,
@@ -54,7 +56,7 @@ impl TensionPattern {
                 all || start || far || inside_start || inside_end,
                 all || end || inside_end,
             ],
-            equal: faults.any(Faults::COPLANARITY_SPLIT),
+            equal: violations.any(Violations::COPLANARITY_SPLIT),
         }
     }
 

@@ -13,7 +13,7 @@ impl<F: TensionFamily> State<'_, F> {
     pub(crate) fn raise(&mut self, options: &SearchOptions) -> Result<Status, F::Error> {
         let mut fronts = Fronts::default();
         let status = loop {
-            if self.faults.is_empty() {
+            if self.violations.is_empty() {
                 break Status::Solved;
             }
             if self.stopped {
@@ -23,14 +23,14 @@ impl<F: TensionFamily> State<'_, F> {
                 break Status::IterationLimit;
             }
             let ahead = if options.strategy.looks_first() {
-                fronts.find(&self.faults, self.windows.polygon())
+                fronts.find(&self.violations, self.windows.polygon())
             } else {
                 Vec::new()
             };
-            let (violated, raised) = (self.faults.len(), self.raise_pending(options, &ahead));
+            let (violated, raised) = (self.violations.len(), self.raise_pending(options, &ahead));
             let Some(changed) = raised else { break Status::Stalled };
             self.iterations += 1;
-            if !(options.strategy.looks_first() && self.faults_stay()) {
+            if !(options.strategy.looks_first() && self.violations_stay()) {
                 self.set_pending()?;
             }
             self.log(Phase::Raise, violated, changed);
@@ -41,7 +41,7 @@ impl<F: TensionFamily> State<'_, F> {
         Ok(status)
     }
 
-    /// Raises the tension that the faults call for: (5.58)–(5.65), with the index m + k (E4), and that
+    /// Raises the tension that the violations require: (5.58)–(5.65), with the index m + k (E4), and that
     /// ahead of fronts. Returns the number of nodes; `None` if a segment fails at whose nodes tension can
     /// rise no further.
     fn raise_pending(&mut self, options: &SearchOptions, fronts: &[Front]) -> Option<usize> {
@@ -97,19 +97,19 @@ impl<F: TensionFamily> State<'_, F> {
             return true;
         }
         let polygon = self.windows.polygon();
-        self.faults.iter().all(|&(segment, faults)| {
-            let mut nodes = TensionPattern::of(faults).nodes(segment, polygon);
+        self.violations.iter().all(|&(segment, violations)| {
+            let mut nodes = TensionPattern::of(violations).nodes(segment, polygon);
             nodes.any(|i| self.nodes.binary_search(&i).is_ok_and(|at| has_risen(at, i)))
         })
     }
 
-    /// Finds the nodes that the faults want to be raised, and the segments at whose nodes tension is to be
+    /// Finds the nodes that the violations require to be raised, and the segments at whose nodes tension is to be
     /// equal.
     fn find_nodes(&mut self) -> Vec<usize> {
         let mut equal = Vec::new();
         self.nodes.clear();
-        for &(segment, faults) in &self.faults {
-            let pattern = TensionPattern::of(faults);
+        for &(segment, violations) in &self.violations {
+            let pattern = TensionPattern::of(violations);
             self.nodes.extend(pattern.nodes(segment, self.windows.polygon()));
             if pattern.equal {
                 equal.push(segment);
@@ -143,22 +143,22 @@ impl<F: TensionFamily> State<'_, F> {
 
     /// Whether segments around the pending tensions fail under them, where that can be seen without setting
     /// them and takes in all that are known to fail.
-    fn faults_stay(&mut self) -> bool {
+    fn violations_stay(&mut self) -> bool {
         let pending = std::mem::take(&mut self.pending);
         let around = self.trial(&on_all_sides::<F>(&pending), AROUND);
         self.pending = pending;
         let Some(around) = around else { return false };
-        if self.faults.iter().any(|(i, _)| !around.contains(i)) {
+        if self.violations.iter().any(|(i, _)| !around.contains(i)) {
             return false;
         }
         let (legs, start) = (&self.legs, around.start);
-        self.faults.clear();
-        self.windows.faults(around, |i| legs[i - start], &mut self.faults);
-        self.doubts.sift(&mut self.windows, &mut self.faults, |i| legs[i - start]);
-        if let Some(&(segment, _)) = self.faults.first() {
+        self.violations.clear();
+        self.windows.unproved(around, |i| legs[i - start], &mut self.violations);
+        self.doubts.sift(&mut self.windows, &mut self.violations, |i| legs[i - start]);
+        if let Some(&(segment, _)) = self.violations.first() {
             self.suspect = segment;
         }
-        !self.faults.is_empty()
+        !self.violations.is_empty()
     }
 }
 

@@ -4,7 +4,7 @@
 
 use std::ops::ControlFlow;
 
-use shapespline_criteria::{Checker, Faults, ShapeReport, StretchChecker, WindowChecker};
+use shapespline_criteria::{BatchChecker, CachedChecker, Checker, ShapeReport, Violations};
 use shapespline_geometry::DataPolygon;
 
 use crate::{
@@ -27,9 +27,9 @@ pub fn search<F: TensionFamily>(
     options: &SearchOptions,
     monitor: &mut dyn FnMut(&Step) -> ControlFlow<()>,
 ) -> Result<Outcome, F::Error> {
-    let mut windows = checker.in_windows();
-    let faults = windows.all_faults(|i| family.end_legs(i));
-    search_from(faults, family, windows, options, monitor)
+    let mut windows = checker.cached();
+    let violations = windows.all_unproved(|i| family.end_legs(i));
+    search_from(violations, family, windows, options, monitor)
 }
 
 /// [`search`] on the polygon of a family: the legs that result, and the report on them.
@@ -47,17 +47,21 @@ where
     FitError: From<F::Error>,
 {
     options.validate()?;
-    let criteria = StretchChecker::new(polygon, options.criteria, options.tolerances);
-    let mut windows = criteria.in_windows();
+    let criteria = BatchChecker::new(polygon, options.criteria, options.tolerances);
+    let mut windows = criteria.cached();
     let mut legs = collect(polygon.segments(), |i| family.end_legs(i));
-    let (faults, applicable) = windows.look(|i| legs[i]);
+    let (violations, applicable) = windows.scan(|i| legs[i]);
     let clean = || ShapeReport::clean(polygon.segments(), options.criteria, applicable);
-    if faults.is_empty() {
+    if violations.is_empty() {
         return Ok(FittedLegs { legs, outcome: Outcome::solved(), report: clean() });
     }
-    let outcome = search_from(faults, family, windows, options, monitor)?;
+    let outcome = search_from(violations, family, windows, options, monitor)?;
     refill(&mut legs, |i| family.end_legs(i));
-    let open = outcome.faults.iter().map(|fault| fault.0).chain(outcome.undecided.iter().copied());
+    let open = outcome
+        .violations
+        .iter()
+        .map(|violation| violation.0)
+        .chain(outcome.undecided.iter().copied());
     let mut open: Vec<usize> = open.collect();
     open.sort_unstable();
     open.dedup();
@@ -69,15 +73,15 @@ where
     Ok(FittedLegs { legs, outcome, report })
 }
 
-/// [`search`], the faults of the curve as it is being known.
+/// [`search`], given the violations of the current curve.
 fn search_from<F: TensionFamily>(
-    faults: Vec<(usize, Faults)>,
+    violations: Vec<(usize, Violations)>,
     family: &mut F,
-    windows: WindowChecker<'_>,
+    windows: CachedChecker<'_>,
     options: &SearchOptions,
     monitor: &mut dyn FnMut(&Step) -> ControlFlow<()>,
 ) -> Result<Outcome, F::Error> {
-    let mut state = State::new(faults, family, windows, monitor);
+    let mut state = State::new(violations, family, windows, monitor);
     let mut status = state.raise(options)?;
     if status == Status::Solved && !state.untouched() {
         if options.strategy == Strategy::Fairest {
@@ -91,7 +95,7 @@ fn search_from<F: TensionFamily>(
         if status == Status::Stalled {
             state.accept_doubts();
         }
-        if state.faults.is_empty() {
+        if state.violations.is_empty() {
             status = Status::Solved;
         }
     }
@@ -101,8 +105,8 @@ fn search_from<F: TensionFamily>(
 impl<F: TensionFamily> State<'_, F> {
     /// Accepts what is undecided if that is all that is left.
     fn accept_doubts(&mut self) {
-        let Self { family, windows, doubts, faults, .. } = self;
-        doubts.accept(windows, faults, |i| family.end_legs(i));
+        let Self { family, windows, doubts, violations, .. } = self;
+        doubts.accept(windows, violations, |i| family.end_legs(i));
     }
 
     /// Solves and checks everything anew, unless the curve as it is was solved as a whole and no segment of
@@ -112,8 +116,8 @@ impl<F: TensionFamily> State<'_, F> {
             if !self.is_verified() {
                 self.solve_and_check_anew()?;
             }
-            self.log(Phase::Verify, self.faults.len(), 0);
-            if self.faults.is_empty() {
+            self.log(Phase::Verify, self.violations.len(), 0);
+            if self.violations.is_empty() {
                 return Ok(Status::Solved);
             }
             match self.raise(options)? {

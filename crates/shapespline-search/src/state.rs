@@ -8,7 +8,7 @@ use std::{
 };
 
 use rayon::prelude::*;
-use shapespline_criteria::{Faults, WindowChecker};
+use shapespline_criteria::{CachedChecker, Violations};
 use shapespline_geometry::DVec3;
 
 use crate::{Diagnostics, Outcome, Phase, Status, Step, TensionFamily, doubts::Doubts};
@@ -23,10 +23,10 @@ pub(crate) const AROUND: usize = 2;
 /// The family, the checker, and what is known to fail.
 pub(crate) struct State<'s, F> {
     pub(crate) family: &'s mut F,
-    pub(crate) windows: WindowChecker<'s>,
+    pub(crate) windows: CachedChecker<'s>,
     monitor: &'s mut dyn FnMut(&Step) -> ControlFlow<()>,
     /// Segments that fail, ascending: those not proved to keep the shape, without accepted doubts.
-    pub(crate) faults: Vec<(usize, Faults)>,
+    pub(crate) violations: Vec<(usize, Violations)>,
     pub(crate) doubts: Doubts,
     /// Ranges of segments that the last solve touched, ascending and disjoint.
     touched: Vec<Range<usize>>,
@@ -52,16 +52,16 @@ pub(crate) struct State<'s, F> {
 
 impl<'s, F: TensionFamily> State<'s, F> {
     pub(crate) fn new(
-        faults: Vec<(usize, Faults)>,
+        violations: Vec<(usize, Violations)>,
         family: &'s mut F,
-        windows: WindowChecker<'s>,
+        windows: CachedChecker<'s>,
         monitor: &'s mut dyn FnMut(&Step) -> ControlFlow<()>,
     ) -> Self {
         Self {
             family,
             windows,
             monitor,
-            faults,
+            violations,
             doubts: Doubts::default(),
             touched: Vec::with_capacity(16),
             unchecked: Vec::new(),
@@ -97,9 +97,9 @@ impl<'s, F: TensionFamily> State<'s, F> {
         self.family.solve()?;
         self.solves += 1;
         let family = &*self.family;
-        self.faults = self.windows.all_faults(|i| family.end_legs(i));
-        self.doubts.sift(&mut self.windows, &mut self.faults, |i| family.end_legs(i));
-        self.verified = self.faults.is_empty();
+        self.violations = self.windows.all_unproved(|i| family.end_legs(i));
+        self.doubts.sift(&mut self.windows, &mut self.violations, |i| family.end_legs(i));
+        self.verified = self.violations.is_empty();
         Ok(())
     }
 
@@ -128,14 +128,14 @@ impl<'s, F: TensionFamily> State<'s, F> {
         let suspect = self.suspect;
         let (windows, doubts) = (&mut self.windows, &self.doubts);
         if around.contains(&suspect)
-            && !windows.faults_at(suspect, legs[suspect - start]).is_empty()
-            && doubts.is_fault(windows, suspect, legs[suspect - start])
+            && !windows.unproved_at(suspect, legs[suspect - start]).is_empty()
+            && doubts.is_violation(windows, suspect, legs[suspect - start])
         {
             return Some(true);
         }
-        let fault = first_fault(windows, doubts, around, |i| legs[i - start]);
-        self.suspect = fault.unwrap_or(suspect);
-        Some(fault.is_some())
+        let violation = first_violation(windows, doubts, around, |i| legs[i - start]);
+        self.suspect = violation.unwrap_or(suspect);
+        Some(violation.is_some())
     }
 
     /// Sets the pending tensions, solves where that matters, and checks what it touched.
@@ -146,40 +146,40 @@ impl<'s, F: TensionFamily> State<'s, F> {
         self.pending = changes;
         self.pending.clear();
         let touched = &self.touched;
-        self.faults.retain(|(i, _)| {
+        self.violations.retain(|(i, _)| {
             let after = touched.partition_point(|r| r.start <= *i);
             after == 0 || *i >= touched[after - 1].end
         });
-        let untouched = self.faults.len();
+        let untouched = self.violations.len();
         let (family, windows) = (&*self.family, &mut self.windows);
         let legs = |i| family.end_legs(i);
         if touched.len() < MANY {
             for range in touched {
-                windows.faults(range.clone(), legs, &mut self.faults);
+                windows.unproved(range.clone(), legs, &mut self.violations);
             }
         } else {
-            let check = |windows: &mut WindowChecker<'_>, range: &Range<usize>| {
+            let check = |windows: &mut CachedChecker<'_>, range: &Range<usize>| {
                 let mut found = Vec::new();
-                windows.faults(range.clone(), legs, &mut found);
+                windows.unproved(range.clone(), legs, &mut found);
                 found
             };
             let ranges = touched.par_iter().with_min_len(MANY / 4);
             let found: Vec<_> =
                 ranges.map_init(|| windows.another(), check).flatten_iter().collect();
-            self.faults.extend(found);
+            self.violations.extend(found);
         }
         if untouched > 0 {
-            self.faults.sort_unstable_by_key(|f| f.0);
+            self.violations.sort_unstable_by_key(|f| f.0);
         }
-        self.doubts.sift(windows, &mut self.faults, legs);
-        if let Some(&(segment, _)) = self.faults.first() {
+        self.doubts.sift(windows, &mut self.violations, legs);
+        if let Some(&(segment, _)) = self.violations.first() {
             self.suspect = segment;
         }
-        self.verified = self.faults.is_empty() && self.checks_all();
+        self.verified = self.violations.is_empty() && self.checks_all();
         Ok(())
     }
 
-    /// Sets tensions of a curve without faults; whether it still has none. Ends at the first fault, and
+    /// Sets tensions of a curve without violations; whether it still has none. Ends at the first violation, and
     /// leaves it to the next solve to look at the rest.
     pub(crate) fn try_tension(&mut self, changes: &[(usize, f64)]) -> Result<bool, F::Error> {
         self.solve(changes)?;
@@ -187,26 +187,26 @@ impl<'s, F: TensionFamily> State<'s, F> {
         let legs = |i| family.end_legs(i);
         let known = self.suspect;
         let suspect = self.touched.iter().any(|r| r.contains(&known)).then_some(known..known + 1);
-        let fault = suspect
+        let violation = suspect
             .into_iter()
             .chain(self.touched.iter().cloned())
-            .find_map(|range| first_fault(windows, doubts, range, legs));
-        if let Some(segment) = fault {
+            .find_map(|range| first_violation(windows, doubts, range, legs));
+        if let Some(segment) = violation {
             self.suspect = segment;
             std::mem::swap(&mut self.unchecked, &mut self.touched);
         }
-        self.verified = fault.is_none() && self.checks_all();
-        Ok(fault.is_none())
+        self.verified = violation.is_none() && self.checks_all();
+        Ok(violation.is_none())
     }
 
     /// Whether some of the segments fail as they are.
-    pub(crate) fn has_faults_among(&mut self, segments: &[usize]) -> bool {
+    pub(crate) fn has_violations_among(&mut self, segments: &[usize]) -> bool {
         let (family, windows, doubts) = (&*self.family, &mut self.windows, &self.doubts);
         let legs = |i| family.end_legs(i);
-        segments.iter().any(|&i| first_fault(windows, doubts, i..i + 1, legs).is_some())
+        segments.iter().any(|&i| first_violation(windows, doubts, i..i + 1, legs).is_some())
     }
 
-    /// Sets tensions under which the curve is known to have no faults: solved, not checked again.
+    /// Sets tensions under which the curve is known to have no violations: solved, not checked again.
     pub(crate) fn return_to(&mut self, changes: &[(usize, f64)]) -> Result<(), F::Error> {
         self.solve(changes)?;
         self.verified = self.checks_all();
@@ -258,19 +258,19 @@ impl<'s, F: TensionFamily> State<'s, F> {
             nodes_changed: self.tense_nodes(),
         };
         let undecided = self.doubts.accepted();
-        Outcome { diagnostics, history: self.history, faults: self.faults, undecided }
+        Outcome { diagnostics, history: self.history, violations: self.violations, undecided }
     }
 }
 
 /// The first of some segments that is not proved to keep the shape and is no accepted doubt.
-fn first_fault(
-    windows: &mut WindowChecker<'_>,
+fn first_violation(
+    windows: &mut CachedChecker<'_>,
     doubts: &Doubts,
     mut segments: Range<usize>,
     legs: impl Fn(usize) -> [DVec3; 2],
 ) -> Option<usize> {
-    while let Some(i) = windows.any_fault(segments.clone(), &legs) {
-        if doubts.is_fault(windows, i, legs(i)) {
+    while let Some(i) = windows.first_unproved(segments.clone(), &legs) {
+        if doubts.is_violation(windows, i, legs(i)) {
             return Some(i);
         }
         segments.start = i + 1;

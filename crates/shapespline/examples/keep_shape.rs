@@ -17,7 +17,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let polygon = DataPolygon::new(points, &Parametrization::Chordal, Boundary::ZeroCurvature)?;
 
     let cubic = NuSpline::new(polygon.clone(), Tension::Uniform(0.0))?;
-    println!("C² cubic spline: {}", cubic.check(Criteria::ALL, Tolerances::default())?);
+    println!("C² cubic spline: {}", cubic.check(Criteria::DEFAULT, Tolerances::default())?);
 
     let fit = NuSpline::shape_preserving(polygon, &SearchOptions::default())?;
     println!("ν-spline: {}", fit.report);

@@ -33,7 +33,7 @@
 //!
 //! // The C² cubic bulges the wrong way before and after the bend …
 //! let cubic = NuSpline::new(polygon.clone(), Tension::Uniform(0.0))?;
-//! let report = cubic.check(Criteria::ALL, Tolerances::default())?;
+//! let report = cubic.check(Criteria::DEFAULT, Tolerances::default())?;
 //! assert_eq!(report.count(Criterion::Convexity).violated, 2);
 //!
 //! // … the shape-preserving ν-spline does not.

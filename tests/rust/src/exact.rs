@@ -6,7 +6,7 @@
 
 use num_bigint::BigInt;
 use shapespline::{
-    criteria::{Calls, separation},
+    criteria::{Requirements, inflection_parameter},
     prelude::*,
 };
 
@@ -104,7 +104,7 @@ impl Cubic {
         polygon: &DataPolygon,
         segment: usize,
         criterion: Criterion,
-        around: [Calls; 3],
+        around: [Requirements; 3],
         tolerances: &Tolerances,
     ) -> Option<bool> {
         let calls = around[1];
@@ -128,14 +128,14 @@ impl Cubic {
             }
             Criterion::Torsion => {
                 let twist = dot(&cross(&self.a, &self.b), &self.c);
-                let right = calls.any(Calls::RIGHT_TORSION);
+                let right = calls.any(Requirements::RIGHT_TORSION);
                 Some(if right { twist > BigInt::ZERO } else { twist < BigInt::ZERO })
             }
             Criterion::Coplanarity => {
-                let parts = if calls.any(Calls::COPLANARITY) {
+                let parts = if calls.any(Requirements::COPLANARITY) {
                     vec![[0.0, 1.0]]
                 } else {
-                    let flip = separation(polygon, segment);
+                    let flip = inflection_parameter(polygon, segment);
                     vec![[0.0, 0.5 * flip], [0.5 * (1.0 + flip), 1.0]]
                 };
                 let [first, middle, last] = self.omega();
@@ -149,8 +149,8 @@ impl Cubic {
                 let tangent = [self.a.clone(), self.b.clone(), self.c.clone()];
                 let line = |k: usize| mean_direction(&self.around[k + 1], &self.around[k + 2]);
                 let epsilon = tolerances.collinearity;
-                let start = calls.any(Calls::LINE_AT_START);
-                let end = calls.any(Calls::LINE_AT_END);
+                let start = calls.any(Requirements::LINE_AT_START);
+                let end = calls.any(Requirements::LINE_AT_END);
                 let start = start.then(|| inside(&tangent, [0.0, 0.5], &line(0), epsilon));
                 let end = end.then(|| inside(&tangent, [0.5, 1.0], &line(1), epsilon));
                 all(start.into_iter().chain(end))
@@ -159,17 +159,18 @@ impl Cubic {
     }
 
     /// Turning at both nodes, given what the segment and those beside it are asked.
-    fn bends(&self, [before, calls, after]: [Calls; 3]) -> bool {
+    fn bends(&self, [before, calls, after]: [Requirements; 3]) -> bool {
         let [start, _, end] = self.omega();
         let sides = [cross(&self.a, &self.chord), cross(&self.chord, &self.c)];
-        let sign = |calls: Calls| {
-            i32::from(calls.any(Calls::CONVEXITY)) - i32::from(calls.any(Calls::INFLECTION))
+        let sign = |calls: Requirements| {
+            i32::from(calls.any(Requirements::CONVEXITY))
+                - i32::from(calls.any(Requirements::INFLECTION))
         };
-        let holds = |asked: Calls,
+        let holds = |asked: Requirements,
                      bend: &Whole,
                      side: &Whole,
                      [own, other, far]: [usize; 3],
-                     beside: Calls| {
+                     beside: Requirements| {
             let along = |k: usize| dot(bend, &self.normal(k));
             let agrees = |k: usize, sign: i32| sign == 0 || along(k) * sign > BigInt::ZERO;
             !calls.any(asked)
@@ -178,8 +179,8 @@ impl Cubic {
                     && agrees(other, sign(calls))
                     && agrees(far, sign(beside))
         };
-        holds(Calls::TURNING_AT_START, &start, &sides[0], [1, 2, 0], before)
-            && holds(Calls::TURNING_AT_END, &end, &sides[1], [2, 1, 3], after)
+        holds(Requirements::TURNING_AT_START, &start, &sides[0], [1, 2, 0], before)
+            && holds(Requirements::TURNING_AT_END, &end, &sides[1], [2, 1, 3], after)
     }
 
     /// `ω·n > 0` on the segment.

@@ -98,10 +98,10 @@ fn every_form_of_a_cubic_has_the_verdicts_of_the_cubic() {
             _ if i == m + 1 => [end[1], straight(i)],
             _ => [straight(i); 2],
         };
-        let cubic = Checker::new(&polygon, Criteria::EVERY, Tolerances::default());
+        let cubic = Checker::new(&polygon, Criteria::ALL, Tolerances::default());
         for (name, curve) in forms(&polygon, &cubic_pieces(&polygon, legs)) {
             let tolerances = Tolerances::default();
-            let any = CurveChecker::new(&polygon, &curve, Criteria::EVERY, tolerances, 1e-9);
+            let any = CurveChecker::new(&polygon, &curve, Criteria::ALL, tolerances, 1e-9);
             let any = any.unwrap();
             for criterion in Criterion::ALL {
                 let (a, b) = (cubic.record(m, end, criterion), any.record(m, criterion));
@@ -132,11 +132,11 @@ fn every_form_of_a_cubic_has_the_verdicts_of_the_cubic() {
 fn real_curves_in_every_form_have_one_report() {
     for polygon in [feature_line(), helix(1.0)] {
         let spline = NuSpline::new(polygon.clone(), Tension::Uniform(0.0)).unwrap();
-        let expected = spline.check(Criteria::EVERY, Tolerances::default()).unwrap();
+        let expected = spline.check(Criteria::ALL, Tolerances::default()).unwrap();
         let pieces = cubic_pieces(&polygon, |i| spline.curve().legs()[i]);
         for (name, curve) in forms(&polygon, &pieces) {
             let tolerances = Tolerances::default();
-            let report = check_curve(&polygon, &curve, Criteria::EVERY, tolerances).unwrap();
+            let report = check_curve(&polygon, &curve, Criteria::ALL, tolerances).unwrap();
             assert_eq!(report.counts, expected.counts, "{name}");
             assert!(report.undecided.is_empty(), "{name}\n{report}");
             let places = |r: &ShapeReport| -> Vec<_> {
@@ -145,8 +145,7 @@ fn real_curves_in_every_form_have_one_report() {
             assert_eq!(places(&report), places(&expected), "{name}");
         }
         let direct = PiecewiseBezier::from(spline.curve());
-        let report =
-            check_curve(&polygon, &direct, Criteria::EVERY, Tolerances::default()).unwrap();
+        let report = check_curve(&polygon, &direct, Criteria::ALL, Tolerances::default()).unwrap();
         assert_eq!(report.counts, expected.counts);
     }
 }
@@ -171,7 +170,7 @@ fn weights_are_not_ignored() {
         let plain: Vec<DVec3> = pieces.iter().flatten().copied().collect();
         let u = polygon.parameters().to_vec();
         let three = Dimension::Three;
-        let cubic = Checker::new(&polygon, Criteria::EVERY, Tolerances::default());
+        let cubic = Checker::new(&polygon, Criteria::ALL, Tolerances::default());
         let rational = |weights: &[f64]| {
             PiecewiseBezier::rational(u.clone(), &plain, weights, 3, three).unwrap()
         };
@@ -179,7 +178,7 @@ fn weights_are_not_ignored() {
         let progression: Vec<f64> = (0..plain.len()).map(|i| ratio.powi(i as i32 % 4)).collect();
         let curve = rational(&progression);
         let tolerances = Tolerances::default();
-        let any = CurveChecker::new(&polygon, &curve, Criteria::EVERY, tolerances, 1e-9).unwrap();
+        let any = CurveChecker::new(&polygon, &curve, Criteria::ALL, tolerances, 1e-9).unwrap();
         for criterion in signs {
             let (a, b) = (cubic.record(m, end, criterion), any.record(m, criterion));
             if a.applicable && any.undecided(m, criterion).is_none() {
@@ -224,7 +223,7 @@ fn splines_with_knots_between_the_points() {
     let points = u.iter().map(|&u| curve.position(u)).collect();
     let given = Parametrization::Given(u);
     let polygon = DataPolygon::new(points, &given, Boundary::ZeroCurvature).unwrap();
-    let report = check_curve(&polygon, &curve, Criteria::EVERY, Tolerances::default()).unwrap();
+    let report = check_curve(&polygon, &curve, Criteria::ALL, Tolerances::default()).unwrap();
     // It winds about a line, as its points do.
     assert!(report.ok(), "{report}");
     assert!(report.count(Criterion::Convexity).applicable >= 3);
@@ -240,7 +239,7 @@ fn splines_with_knots_between_the_points() {
         breaks.extend([0.5 * (from + to), to]);
     }
     let corners = PiecewiseBezier::new(breaks, &line, 1, Dimension::Three).unwrap();
-    let report = check_curve(&polygon, &corners, Criteria::ALL, Tolerances::default()).unwrap();
+    let report = check_curve(&polygon, &corners, Criteria::DEFAULT, Tolerances::default()).unwrap();
     let count = report.count(Criterion::Convexity);
     assert_eq!(count.violated, count.applicable);
 }
@@ -259,7 +258,7 @@ fn margins_of_a_parabola_and_of_a_cube_by_hand() {
         let breaks = polygon.parameters().to_vec();
         let curve = PiecewiseBezier::new(breaks, &control, 4, Dimension::Two).unwrap();
         let tolerances = Tolerances::default();
-        let any = CurveChecker::new(&polygon, &curve, Criteria::EVERY, tolerances, INTERPOLATION);
+        let any = CurveChecker::new(&polygon, &curve, Criteria::ALL, tolerances, INTERPOLATION);
         any.unwrap().record(1, criterion)
     };
     // y = x² on [0, 1]: ω/(‖γ'‖ σ₂) and 2(γ×γ')/(t²‖γ'‖ σ₂) are 1/√(1+4t²), the third quotient is 1.
@@ -308,7 +307,7 @@ fn what_turns_back_between_the_binormals_is_no_inflection() {
         let breaks = polygon.parameters().to_vec();
         let curve = PiecewiseBezier::new(breaks, &control, 5, Dimension::Three).unwrap();
         let tolerances = Tolerances::default();
-        let any = CurveChecker::new(&polygon, &curve, Criteria::EVERY, tolerances, INTERPOLATION);
+        let any = CurveChecker::new(&polygon, &curve, Criteria::ALL, tolerances, INTERPOLATION);
         let any = any.unwrap();
         assert_eq!(any.undecided(1, Criterion::Inflection), None);
         let record = any.record(1, Criterion::Inflection);
@@ -346,7 +345,7 @@ fn a_shift_of_the_parameter_changes_nothing() {
         let breaks = breaks.map(|u| u + shift).to_vec();
         let curve = PiecewiseBezier::new(breaks, &control, 3, Dimension::Three).unwrap();
         let tolerances = Tolerances::default();
-        let any = CurveChecker::new(&polygon, &curve, Criteria::EVERY, tolerances, INTERPOLATION);
+        let any = CurveChecker::new(&polygon, &curve, Criteria::ALL, tolerances, INTERPOLATION);
         let any = any.unwrap();
         [Criterion::Convexity, Criterion::Torsion].map(|c| any.record(1, c).margin)
     };
@@ -375,7 +374,7 @@ fn what_rounding_hides_is_undecided() {
     let polygon =
         DataPolygon::new(points, &Parametrization::Uniform, Boundary::ZeroCurvature).unwrap();
     // Its pieces meet in corners.
-    let criteria = Criteria::ALL.without(Criterion::Turning);
+    let criteria = Criteria::DEFAULT.without(Criterion::Turning);
     let report = check_curve(&polygon, &curve, criteria, Tolerances::default()).unwrap();
     let open: Vec<_> = report.undecided.iter().map(|x| (x.segment, x.criterion)).collect();
     assert_eq!(open, [(1, Criterion::Torsion)]);
@@ -396,7 +395,7 @@ fn curves_that_do_not_belong_to_the_points_are_refused() {
         DataPolygon::new(points.clone(), &Parametrization::Uniform, Boundary::ZeroCurvature);
     let polygon = polygon.unwrap();
     let check = |curve: &PiecewiseBezier| {
-        check_curve(&polygon, curve, Criteria::ALL, Tolerances::default())
+        check_curve(&polygon, curve, Criteria::DEFAULT, Tolerances::default())
     };
     let make = |shift: f64, p: &[DVec3]| {
         PiecewiseBezier::new(breaks(shift), p, 2, Dimension::Three).unwrap()
@@ -414,10 +413,10 @@ fn curves_that_do_not_belong_to_the_points_are_refused() {
     }
     let wide = make(0.0, &control(&moved));
     let tolerances = Tolerances::default();
-    assert!(CurveChecker::new(&polygon, &wide, Criteria::ALL, tolerances, 1e-3).is_ok());
-    assert!(CurveChecker::new(&polygon, &wide, Criteria::ALL, tolerances, f64::NAN).is_err());
+    assert!(CurveChecker::new(&polygon, &wide, Criteria::DEFAULT, tolerances, 1e-3).is_ok());
+    assert!(CurveChecker::new(&polygon, &wide, Criteria::DEFAULT, tolerances, f64::NAN).is_err());
     let strict = Tolerances { coplanarity: 0.0, ..tolerances };
-    assert!(CurveChecker::new(&polygon, &wide, Criteria::ALL, strict, INTERPOLATION).is_err());
+    assert!(CurveChecker::new(&polygon, &wide, Criteria::DEFAULT, strict, INTERPOLATION).is_err());
 
     let message = check(&make(0.5, &control(&points))).unwrap_err().to_string();
     assert!(message.contains("parameters[0] = 0") && message.contains("[0.5, 3.5]"), "{message}");
@@ -468,12 +467,12 @@ fn reports_can_be_written_and_read() {
     let points = Kind::Walk.points(12, &mut random);
     let natural = Boundary::ZeroCurvature;
     let polygon = DataPolygon::new(points.clone(), &Parametrization::Uniform, natural).unwrap();
-    let checker = Checker::new(&polygon, Criteria::EVERY, Tolerances::default());
+    let checker = Checker::new(&polygon, Criteria::ALL, Tolerances::default());
     let legs = |i: usize| [DVec3::new(0.3, 0.1, -0.2), polygon.chord(i) / 3.0];
     let report = checker.report(legs);
     assert!(report.violations.len() > 3, "{report}");
     assert_eq!(again(&report), report);
-    let notes = checker.notes(legs);
+    let notes = checker.node_conditions(legs);
     assert!(!notes.nodes.is_empty());
     assert_eq!(again(&notes), notes);
     let record = checker.record(1, legs(1), Criterion::Torsion);
@@ -493,7 +492,7 @@ fn the_report_on_a_clean_curve_takes_no_memory() {
         let natural = Boundary::ZeroCurvature;
         let polygon = DataPolygon::new(points, &Parametrization::Uniform, natural).unwrap();
         let fit = NuSpline::shape_preserving(polygon, &SearchOptions::default()).unwrap();
-        let report = fit.curve.check(Criteria::ALL, Tolerances::default()).unwrap();
+        let report = fit.curve.check(Criteria::DEFAULT, Tolerances::default()).unwrap();
         assert!(report.ok() && report.segments == n - 1, "{report}");
         assert!(report.count(Criterion::Torsion).applicable > n / 2);
         assert_eq!((report.violations.capacity(), report.undecided.capacity()), (0, 0));

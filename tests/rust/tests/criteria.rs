@@ -3,7 +3,7 @@
 //! The criteria beyond single verdicts: misprints, margins, invariance, information, polygons.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "test code")]
 
-use shapespline::criteria::{Extent, NodeCondition, polygon_shape};
+use shapespline::criteria::{AffineDimension, NodeCondition, polygon_shape};
 use shapespline::prelude::*;
 use shapespline_tests::{
     generate::{Kind, Random},
@@ -12,7 +12,7 @@ use shapespline_tests::{
 };
 
 fn every(polygon: &DataPolygon) -> Checker<'_> {
-    Checker::new(polygon, Criteria::EVERY, Tolerances::default())
+    Checker::new(polygon, Criteria::ALL, Tolerances::default())
 }
 
 /// Theorem 13.4 as printed, for tangents `m, m'` and one normal.
@@ -163,7 +163,7 @@ fn verdicts_and_margins_do_not_depend_on_the_frame() {
 fn a_search_keeps_global_convexity_when_asked() {
     let mut random = Random::new(13);
     // Some of the polygons double back on a line.
-    let criteria = Criteria::EVERY.without(Criterion::Regular);
+    let criteria = Criteria::ALL.without(Criterion::Regular);
     let options = SearchOptions { criteria, ..SearchOptions::default() };
     let mut mended = 0;
     for kind in Kind::ALL {
@@ -174,7 +174,7 @@ fn a_search_keeps_global_convexity_when_asked() {
                 continue;
             };
             let plain = NuSpline::new(polygon.clone(), Tension::Uniform(0.0)).unwrap();
-            let before = plain.check(Criteria::EVERY, Tolerances::default()).unwrap();
+            let before = plain.check(Criteria::ALL, Tolerances::default()).unwrap();
             let fit = NuSpline::shape_preserving(polygon, &options).unwrap();
             assert_eq!(fit.outcome.diagnostics.status, Status::Solved, "{kind:?}");
             let report = fit.curve.check(criteria, Tolerances::default()).unwrap();
@@ -202,13 +202,13 @@ fn notes_on_nodes_and_oscillation() {
         [tangent(i) * size, tangent(i + 1) * size]
     };
     let checker = every(&polygon);
-    let notes = checker.notes(legs);
+    let notes = checker.node_conditions(legs);
     let of = |condition| notes.nodes.iter().filter(move |r| r.condition == condition);
     assert_eq!(of(NodeCondition::Compatibility).count(), n - 1);
     assert!(notes.nodes.iter().all(|r| r.satisfied && r.margin >= 0.0), "{notes:?}");
     assert!(of(NodeCondition::SameTorsion).count() > 10);
     assert!(of(NodeCondition::TorsionChange).count() > 10);
-    let backwards = checker.notes(|i| legs(i).map(|v| -v));
+    let backwards = checker.node_conditions(|i| legs(i).map(|v| -v));
     let compatible = |r: &&shapespline::criteria::NodeRecord| {
         r.condition == NodeCondition::Compatibility && r.satisfied
     };
@@ -221,7 +221,7 @@ fn notes_on_nodes_and_oscillation() {
             DataPolygon::planar(&planar, &Parametrization::Uniform, Boundary::ZeroCurvature);
         let spline = NuSpline::new(polygon.unwrap(), Tension::Uniform(0.0)).unwrap();
         let polygon = spline.polygon().unwrap();
-        let notes = every(&polygon).notes(|i| spline.curve().legs()[i]);
+        let notes = every(&polygon).node_conditions(|i| spline.curve().legs()[i]);
         notes.nodes.into_iter().find(|r| r.node == 2).unwrap()
     };
     let inflection = bends(-1.0);
@@ -238,7 +238,7 @@ fn notes_on_nodes_and_oscillation() {
         let (polygon, legs) = case(6 * k + 1 + k % 2, &mut random);
         let straight = |i: usize| [polygon.chord(i) / 3.0; 2];
         let all = |i: usize| if i == SEGMENT { legs } else { straight(i) };
-        for o in every(&polygon).notes(all).oscillations {
+        for o in every(&polygon).node_conditions(all).oscillations {
             assert!(o.satisfied && o.crossings == o.least, "{o:?}");
             seen[o.crossings] += 1;
         }
@@ -254,9 +254,9 @@ fn notes_go_by_the_tolerances_that_were_given() {
         DataPolygon::planar(&planar, &Parametrization::Uniform, Boundary::ZeroCurvature).unwrap();
     let noted = |zero: f64| -> Vec<usize> {
         let tolerances = Tolerances { zero, ..Tolerances::default() };
-        let checker = Checker::new(&polygon, Criteria::EVERY, tolerances);
+        let checker = Checker::new(&polygon, Criteria::ALL, tolerances);
         assert_eq!(checker.tolerances(), tolerances);
-        let notes = checker.notes(|i| [polygon.chord(i) / 3.0; 2]);
+        let notes = checker.node_conditions(|i| [polygon.chord(i) / 3.0; 2]);
         notes.nodes.iter().map(|r| r.node).collect()
     };
     // The polygon turns by 0.05 at node 1, by 0.7 at node 2.
@@ -273,23 +273,23 @@ fn what_polygons_call_for() {
         polygon_shape(&polygon, &Tolerances::default())
     };
     let line = shape(&[[0.0; 3], [1.0, 2.0, 3.0], [2.0, 4.0, 6.0], [5.0, 10.0, 15.0]]);
-    assert_eq!(line.extent, Extent::Line);
+    assert_eq!(line.affine_dimension, AffineDimension::Line);
     assert!(line.torsion.iter().all(|t| t.is_nan()));
     assert!(line.binormals.iter().all(|b| *b == DVec3::ZERO));
     let collinearity: Criteria = [Criterion::Collinearity].into_iter().collect();
-    assert!(line.calls.iter().all(|&c| c == collinearity), "{:?}", line.calls);
+    assert!(line.required.iter().all(|&c| c == collinearity), "{:?}", line.required);
 
     let plane = shape(&[[0.0; 3], [1.0, 0.0, 1.0], [2.0, 1.0, 3.0], [2.0, 2.0, 4.0]]);
-    assert_eq!(plane.extent, Extent::Plane);
-    assert!(!plane.calls[1].contains(Criterion::Torsion));
-    assert!(!plane.calls[1].contains(Criterion::Coplanarity));
+    assert_eq!(plane.affine_dimension, AffineDimension::Plane);
+    assert!(!plane.required[1].contains(Criterion::Torsion));
+    assert!(!plane.required[1].contains(Criterion::Coplanarity));
 
     let cube = shape(&[[0.0; 3], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [1.0, 1.0, 1.0]]);
-    assert_eq!(cube.extent, Extent::Space);
+    assert_eq!(cube.affine_dimension, AffineDimension::Space);
     assert_eq!(cube.binormals[1], DVec3::Z);
     assert_eq!(cube.turning_angles[1], std::f64::consts::FRAC_PI_2);
     assert_eq!(cube.torsion[1], 1.0);
-    assert!(cube.calls[1].contains(Criterion::Torsion));
+    assert!(cube.required[1].contains(Criterion::Torsion));
     // Perpendicular binormal vectors: neither convexity nor inflection.
-    assert!(!cube.calls[1].contains(Criterion::Convexity));
+    assert!(!cube.required[1].contains(Criterion::Convexity));
 }

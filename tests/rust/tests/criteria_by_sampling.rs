@@ -7,7 +7,7 @@
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use rayon::prelude::*;
-use shapespline::criteria::{CurveChecker, INTERPOLATION, separation};
+use shapespline::criteria::{CurveChecker, INTERPOLATION, inflection_parameter};
 use shapespline::geometry::PiecewiseBezier;
 use shapespline::prelude::*;
 use shapespline_tests::{
@@ -117,7 +117,7 @@ fn sampled(polygon: &DataPolygon, curve: &Samples, criterion: Criterion, corners
             if p.dot(q) > 0.0 {
                 parts((p + q).normalize(), 0.0, 1.0, &omega)
             } else {
-                let flip = separation(polygon, m);
+                let flip = inflection_parameter(polygon, m);
                 let axis = (p - q).normalize();
                 parts(axis, 0.0, 0.5 * flip, &omega).min(parts(
                     axis,
@@ -244,7 +244,7 @@ fn cubic_segments_agree_with_dense_sampling() {
     let tally = Tally::default();
     (0..100_000usize).into_par_iter().for_each(|k| {
         let (polygon, legs) = case(k, &mut Random::new(k as u64));
-        let checker = Checker::new(&polygon, Criteria::EVERY, Tolerances::default());
+        let checker = Checker::new(&polygon, Criteria::ALL, Tolerances::default());
         let points = polygon.points();
         let (start, end) = (points[SEGMENT], points[SEGMENT + 1]);
         let control = [start, start + legs[0], end - legs[1], end];
@@ -307,7 +307,7 @@ fn quintics_agree_with_dense_sampling() {
         let bezier = PiecewiseBezier::new(breaks, &all, 5, Dimension::Three).unwrap();
         let tolerances = Tolerances::default();
         let checker =
-            CurveChecker::new(&polygon, &bezier, Criteria::EVERY, tolerances, INTERPOLATION);
+            CurveChecker::new(&polygon, &bezier, Criteria::ALL, tolerances, INTERPOLATION);
         let checker = checker.unwrap();
         let curve = samples(&control, None);
         let margin = |criterion, around: Option<f64>| match around {

@@ -4,7 +4,7 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "test code")]
 
 use shapespline::{
-    criteria::{Calls, CurveChecker, Faults},
+    criteria::{CurveChecker, Requirements, Violations},
     geometry::PiecewiseBezier,
     prelude::*,
 };
@@ -44,12 +44,12 @@ fn nearly_degenerate(
         _ => {
             let (_, other) = case(r.below(6), r);
             let scale = size / other[0].length();
-            let checker = Checker::new(polygon, Criteria::EVERY, Tolerances::default());
+            let checker = Checker::new(polygon, Criteria::ALL, Tolerances::default());
             let flat = polygon.points().iter().all(|p| p.z == polygon.points()[0].z);
             let keep = if flat { DVec3::new(1.0, 1.0, 0.0) } else { DVec3::ONE };
             let at =
                 |s: f64| [a.lerp(other[0] * scale * keep, s), c.lerp(other[1] * scale * keep, s)];
-            let verdict = |s: f64| checker.faults(SEGMENT, at(s));
+            let verdict = |s: f64| checker.unproved(SEGMENT, at(s));
             let (mut low, mut high) = (0.0, 1.0);
             for _ in 0..55 {
                 let middle = 0.5 * (low + high);
@@ -104,23 +104,23 @@ fn no_verdict_contradicts_exact_arithmetic() {
         let all: Vec<DVec3> = (0..5).flat_map(control).collect();
         let breaks = (0..6).map(f64::from).collect();
         let other = PiecewiseBezier::new(breaks, &all, 3, Dimension::Three).unwrap();
-        let other = CurveChecker::new(&polygon, &other, Criteria::EVERY, tolerances, 1e-9).unwrap();
+        let other = CurveChecker::new(&polygon, &other, Criteria::ALL, tolerances, 1e-9).unwrap();
         let own = other.checker();
         let exact = Cubic::new(&polygon, SEGMENT, control(SEGMENT));
-        let (faults, violations) = (own.faults(SEGMENT, legs), own.violations(SEGMENT, legs));
-        let around = [SEGMENT - 1, SEGMENT, SEGMENT + 1].map(|i| own.calls()[i]);
+        let (unproved, violations) = (own.unproved(SEGMENT, legs), own.violations(SEGMENT, legs));
+        let around = [SEGMENT - 1, SEGMENT, SEGMENT + 1].map(|i| own.requirements()[i]);
         let calls = around[1];
-        for criterion in Criterion::ALL.into_iter().filter(|&c| calls.any(Calls::of(c))) {
+        for criterion in Criterion::ALL.into_iter().filter(|&c| calls.any(Requirements::of(c))) {
             let Some(holds) = exact.holds(&polygon, SEGMENT, criterion, around, &tolerances) else {
                 continue;
             };
-            let of = Faults::of(criterion);
+            let of = Violations::of(criterion);
             let verdict = |satisfied: bool, open: bool| match (satisfied, open) {
                 (true, _) => Some(true),
                 (false, false) => Some(false),
                 (false, true) => None,
             };
-            let mine = verdict(!faults.any(of), !violations.any(of));
+            let mine = verdict(!unproved.any(of), !violations.any(of));
             let record = other.record(SEGMENT, criterion);
             let open = other.undecided(SEGMENT, criterion).is_some();
             let theirs = verdict(record.satisfied, open);

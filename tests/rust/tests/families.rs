@@ -230,7 +230,7 @@ fn limits_of_lemma_4_1_to_4_3() {
             let limit = (polygon.chord(i - 1) / h0).lerp(polygon.chord(i) / h1, weight);
             assert!((tangents[i] - limit).length() < 1e-7 * (1.0 + limit.length()), "{case} {i}");
         }
-        let report = tense.check(Criteria::ALL, Tolerances::default()).unwrap();
+        let report = tense.check(Criteria::DEFAULT, Tolerances::default()).unwrap();
         for criterion in [Criterion::Convexity, Criterion::Inflection, Criterion::Torsion] {
             assert_eq!(report.count(criterion).violated, 0, "{case} {criterion}");
         }
@@ -244,7 +244,7 @@ fn the_reduction_of_paper_000_on_the_feature_line() {
         TensionSpline::shape_preserving(feature_line(), &options).unwrap()
     };
     let plain = TensionSpline::new(feature_line(), TangentScale::Uniform(1.0)).unwrap();
-    let criteria = Criteria::ALL.without(Criterion::Turning);
+    let criteria = Criteria::DEFAULT.without(Criterion::Turning);
     let report = plain.check(criteria, Tolerances::default()).unwrap();
     let found: Vec<(usize, Criterion)> =
         report.violations.iter().map(|v| (v.segment + 1, v.criterion)).collect();
@@ -435,7 +435,7 @@ fn global_convexity_on_request() {
     for kind in [Kind::Walk, Kind::Track, Kind::Planar] {
         for case in 0..100 {
             let Some(polygon) = polygon(kind, case, &mut random) else { continue };
-            let criteria = Criteria::EVERY.without(Criterion::Regular);
+            let criteria = Criteria::ALL.without(Criterion::Regular);
             let search = SearchOptions { criteria, ..SearchOptions::default() };
             let handles = HandleOptions { criteria, ..HandleOptions::default() };
             let fits = [

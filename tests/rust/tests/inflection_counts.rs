@@ -47,7 +47,7 @@ fn example_7_8() {
     assert_eq!(seen(&curve, &views), [0, 0, 0, 0, 2, 1]);
 }
 
-/// The normals of both examples' points call for convexity; what Example 7.7's curve violates the
+/// The normals of both examples' points require convexity; what Example 7.7's curve violates the
 /// report says.
 #[test]
 fn the_examples_as_reports() {
@@ -59,7 +59,7 @@ fn the_examples_as_reports() {
         let points = points.map(DVec3::from).to_vec();
         let polygon =
             DataPolygon::new(points, &Parametrization::Uniform, Boundary::ZeroCurvature).unwrap();
-        let checker = Checker::new(&polygon, Criteria::EVERY, Tolerances::default());
+        let checker = Checker::new(&polygon, Criteria::ALL, Tolerances::default());
         let legs = legs.map(DVec3::from);
         for criterion in [Criterion::Convexity, Criterion::GlobalConvexity] {
             let record = checker.record(1, legs, criterion);

@@ -29,8 +29,8 @@ fn record(
     legs: &dyn Fn(usize) -> [DVec3; 2],
     condition: NodeCondition,
 ) -> Option<NodeRecord> {
-    let checker = Checker::new(polygon, Criteria::ALL, Tolerances::default());
-    let notes = checker.notes(legs);
+    let checker = Checker::new(polygon, Criteria::DEFAULT, Tolerances::default());
+    let notes = checker.node_conditions(legs);
     notes.nodes.into_iter().find(|r| r.node == NODE && r.condition == condition)
 }
 
@@ -40,7 +40,7 @@ fn derivatives([a, c]: [DVec3; 2], chord: DVec3, t: f64) -> [DVec3; 3] {
     [a * (s * s) + b * (2.0 * s * t) + c * (t * t), (b - a) * s + (c - b) * t, a + c - b * 2.0]
 }
 
-/// Calls `look` with the parameter and `ω` along the two segments together.
+/// Requirements `look` with the parameter and `ω` along the two segments together.
 fn along(
     polygon: &DataPolygon,
     legs: &dyn Fn(usize) -> [DVec3; 2],

@@ -14,7 +14,7 @@ fn nussp() -> SearchOptions {
 fn the_c2_cubic_of_the_feature_line_has_four_violations() {
     let cubic = NuSpline::new(feature_line(), Tension::Uniform(0.0)).unwrap();
     // The paper's criteria leave out inflection, and turning at a node, of which node 2 is in want too.
-    let criteria = Criteria::ALL.without(Criterion::Turning);
+    let criteria = Criteria::DEFAULT.without(Criterion::Turning);
     let report = cubic.check(criteria, Tolerances::default()).unwrap();
     let found: Vec<(usize, Criterion)> =
         report.violations.iter().map(|v| (v.segment + 1, v.criterion)).collect();

@@ -94,7 +94,7 @@ fn no_tension_of_a_fairest_curve_can_be_lowered() {
         let fit = NuSpline::shape_preserving(polygon.clone(), &options(Strategy::Fairest)).unwrap();
         let own = fit.curve.tension();
         let checker = Checker::new(&polygon, Criteria::OF_FITS, Tolerances::default());
-        let mut windows = checker.in_windows();
+        let mut windows = checker.cached();
         // The legs if they keep the shape: of what was left undecided, nothing may be known to fail.
         let mut lowered = |node: usize, factor: f64| -> Option<Vec<[DVec3; 3]>> {
             let mut tension = own.to_vec();
@@ -104,7 +104,7 @@ fn no_tension_of_a_fairest_curve_can_be_lowered() {
             let keeps = |i: usize| {
                 let accepted = fit.outcome.undecided.contains(&i);
                 let failures = windows.failures_at(i, legs[i]);
-                if accepted { failures } else { windows.faults_at(i, legs[i]) }.is_empty()
+                if accepted { failures } else { windows.unproved_at(i, legs[i]) }.is_empty()
             };
             let whole = |i: usize| {
                 let [a, c] = legs[i];

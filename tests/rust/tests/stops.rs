@@ -113,7 +113,7 @@ fn convexity_inflection_and_torsion_imply_a_regular_cubic() {
     for case in 0..scaled(60_000) {
         let (polygon, [a, c]) = segments::case(case, &mut Random::new(case as u64));
         let m = segments::SEGMENT;
-        let checker = Checker::new(&polygon, Criteria::EVERY, Tolerances::default());
+        let checker = Checker::new(&polygon, Criteria::ALL, Tolerances::default());
         let all = [Criterion::Convexity, Criterion::Inflection, Criterion::Torsion];
         for (k, criterion) in all.into_iter().enumerate() {
             let record = checker.record(m, [a, c], criterion);
@@ -157,7 +157,7 @@ fn plain_curves_through_points_that_double_back_on_a_line_are_not_regular() {
         for family in Family::DEFAULTS {
             let name = format!("{case} {family:?} {:?}", polygon.points());
             let plain = family.plain(polygon.clone());
-            let strict = Checker::new(&polygon, Criteria::ALL, Tolerances::default());
+            let strict = Checker::new(&polygon, Criteria::DEFAULT, Tolerances::default());
             let report = strict.report(|i| plain.curve().cubic().legs()[i]);
             assert!(!report.ok() && report.count(Criterion::Regular).violated > 0, "{name}");
             // A fit may stop there, unless it was asked not to.
@@ -176,7 +176,7 @@ fn what_stops_at_its_ends_is_not_regular() {
         DataPolygon::planar(&points, &Parametrization::Chordal, Boundary::Periodic).unwrap();
     let spline = NuSpline::new(polygon, Tension::Uniform(0.0)).unwrap();
     assert!(spline.tangents().iter().all(|t| *t == DVec3::ZERO));
-    let report = spline.check(Criteria::ALL, Tolerances::default()).unwrap();
+    let report = spline.check(Criteria::DEFAULT, Tolerances::default()).unwrap();
     assert!(!report.ok());
     let found: Vec<_> = report.violations.iter().map(|v| (v.segment, v.criterion)).collect();
     assert_eq!(found, [(0, Criterion::Regular), (1, Criterion::Regular)]);
@@ -184,7 +184,7 @@ fn what_stops_at_its_ends_is_not_regular() {
     let line = [DVec3::ZERO, DVec3::ZERO, DVec3::X, DVec3::X];
     let curve = PiecewiseBezier::new(vec![0.0, 1.0], &line, 3, Dimension::Three).unwrap();
     let polygon = chord([DVec3::X / 3.0; 3], DVec3::ZERO);
-    let (criteria, tolerances) = (Criteria::ALL, Tolerances::default());
+    let (criteria, tolerances) = (Criteria::DEFAULT, Tolerances::default());
     let report = CurveChecker::new(&polygon, &curve, criteria, tolerances, INTERPOLATION);
     assert_eq!(report.unwrap().report().count(Criterion::Regular).violated, 1);
     // High tension makes legs short, and no curve stop, as long as there is anything left of them.

@@ -15,10 +15,10 @@
 //! *attained*, by a direction that is handed back, but another direction might show more: it is the
 //! exact maximum over ever more values of `K`, and says so.
 
+mod arrangement;
 mod roots;
-mod sequence;
-mod sweep;
-mod walk;
+mod sign_sequence;
+mod traversal;
 
 use std::ops::ControlFlow;
 
@@ -26,11 +26,11 @@ use glam::DVec3;
 use shapespline_geometry::{Coordinates, Dimension, InputError, PiecewiseBezier, normalize};
 
 use self::{
-    sequence::{NOISE, STRAIGHT, Sequence, along, from_beside, hidden_from_beside, lies_in},
-    sweep::most,
-    walk::Most,
+    arrangement::most,
+    sign_sequence::{NOISE, STRAIGHT, Sequence, along, from_beside, hidden_from_beside, lies_in},
+    traversal::Maximum,
 };
-use crate::general::{Piece, Segment, corners};
+use crate::arbitrary_degree::{Piece, Segment, corners};
 
 /// Number of inflections, and a direction that shows them.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -223,7 +223,7 @@ const HALVINGS: usize = 50;
 
 /// The count in the cell that a walk has found, seen from within it.
 fn witness(
-    most: &Most,
+    most: &Maximum,
     sequence: &Sequence,
     seen: impl Fn(DVec3) -> InflectionCount,
 ) -> InflectionCount {

@@ -8,7 +8,7 @@ use glam::DVec3;
 
 use crate::{
     Curve, InputError, PiecewiseCubic, Side,
-    batch::{Evaluate, Locals, check_rows},
+    evaluate_many::{Evaluate, Locals, check_rows},
 };
 
 impl PiecewiseCubic {
@@ -42,7 +42,7 @@ impl PiecewiseCubic {
     /// there are many); large batches run on all threads.
     #[must_use]
     pub fn evaluate_many(&self, u: &[f64], order: usize, side: Side) -> Vec<f64> {
-        let mut out = vec![0.0; u.len() * self.dimension.len()];
+        let mut out = vec![0.0; u.len() * self.dimension.count()];
         self.fill(u, order, side, &mut out);
         out
     }

@@ -5,7 +5,7 @@
 use std::ops::Deref;
 
 use shapespline::{
-    criteria::{Notes, Record, ShapeReport},
+    criteria::{NodeConditions, Record, ShapeReport},
     geometry::{InputMap, Repeated},
 };
 
@@ -59,7 +59,7 @@ impl Fitted {
     }
 
     /// The same for notes.
-    pub(crate) fn with_places(&self, notes: Notes) -> Notes {
+    pub(crate) fn with_places(&self, notes: NodeConditions) -> NodeConditions {
         let mut notes = in_input(&self.map, notes);
         let nodes = notes.nodes.iter_mut().map(|record| &mut record.location);
         let segments = notes.oscillations.iter_mut().map(|record| &mut record.location);
@@ -69,7 +69,7 @@ impl Fitted {
 }
 
 /// Notes with the nodes and segments of the input.
-pub(crate) fn in_input(map: &InputMap, mut notes: Notes) -> Notes {
+pub(crate) fn in_input(map: &InputMap, mut notes: NodeConditions) -> NodeConditions {
     for record in &mut notes.nodes {
         record.node = map.node(record.node);
     }

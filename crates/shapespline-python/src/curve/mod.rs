@@ -252,7 +252,7 @@ impl SpaceCurve {
 
     /// Number of coordinates.
     fn columns(&self) -> usize {
-        self.curve.cubic().dimension().len()
+        self.curve.cubic().dimension().count()
     }
 }
 
@@ -286,7 +286,7 @@ impl SpaceCurve {
         Ok(format!(
             "<{}: {points} points in {}, {tension}; u from {} to {}, boundary {boundary}>",
             slf.get_type().name()?,
-            if cubic.dimension().len() == 2 { "the plane" } else { "space" },
+            if cubic.dimension().count() == 2 { "the plane" } else { "space" },
             short(knots[0]),
             short(knots[knots.len() - 1]),
         ))

@@ -122,7 +122,7 @@ impl ShapeReport {
         pandas.getattr("DataFrame")?.call1((columns,))
     }
 
-    /// Draw which criterion each segment calls for, where it is violated, and what stays open.
+    /// Draw which criterion each segment requires, where it is violated, and what stays open.
     ///
     /// Parameters
     /// ----------

@@ -115,8 +115,9 @@ impl ShapeReport {
     }
 
     /// What the paper says of nodes and of oscillation.
-    fn notes(&self, py: Python<'_>) -> PyResult<criteria::Notes> {
-        let make = |go_on: GoOn<'_>| self.subject.judge(self.asked, |judge| judge.notes(go_on));
+    fn node_conditions(&self, py: Python<'_>) -> PyResult<criteria::NodeConditions> {
+        let make =
+            |go_on: GoOn<'_>| self.subject.judge(self.asked, |judge| judge.node_conditions(go_on));
         let notes = interruptible(py, self.subject.segments(), make)?.map_err(subject_error)?;
         notes.ok_or_else(interrupted)
     }
@@ -212,19 +213,19 @@ impl ShapeReport {
     /// the check.
     #[getter]
     fn nodes<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyAny>>> {
-        let notes = self.notes(py)?;
+        let notes = self.node_conditions(py)?;
         let parts = notes.nodes.iter();
         let parts = parts.map(|r| (r.node, r.condition.name(), r.satisfied, r.margin, r.location));
         records(py, "NodeRecord", parts)
     }
 
-    /// How the segments that call for coplanarity move about their plane, as information: a list of
+    /// How the segments that require coplanarity move about their plane, as information: a list of
     /// `OscillationRecord` (Gautam, section 10).
     ///
     /// Made anew at each access, as ``nodes``.
     #[getter]
     fn oscillations<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyAny>>> {
-        let notes = self.notes(py)?;
+        let notes = self.node_conditions(py)?;
         let parts = notes
             .oscillations
             .iter()

@@ -18,7 +18,7 @@ use crate::pickle::{self, Kind, Reduced};
 /// criterion : str
 ///     Name of the criterion.
 /// applicable : bool
-///     Whether the data polygon calls for the criterion on this segment.
+///     Whether the data polygon requires the criterion on this segment.
 /// satisfied : bool
 ///     Whether the curve is proved to meet it; true where it does not apply.
 /// margin : float
@@ -42,7 +42,7 @@ pub(crate) struct ShapeRecord {
     segment: usize,
     /// Name of the criterion.
     criterion: String,
-    /// Whether the data polygon calls for the criterion on this segment.
+    /// Whether the data polygon requires the criterion on this segment.
     applicable: bool,
     /// Whether the curve meets it; true where it does not apply.
     satisfied: bool,

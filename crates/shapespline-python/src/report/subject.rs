@@ -6,7 +6,8 @@ use std::sync::Arc;
 
 use shapespline::{
     criteria::{
-        Checker, Criterion, CurveChecker, CurveError, INTERPOLATION, Notes, Record, ShapeReport,
+        Checker, Criterion, CurveChecker, CurveError, INTERPOLATION, NodeConditions, Record,
+        ShapeReport,
     },
     geometry::{DVec3, DataPolygon, InputMap, PiecewiseBezier},
 };
@@ -71,12 +72,12 @@ impl Judge<'_> {
     }
 
     /// The notes; none after Ctrl-C.
-    pub(crate) fn notes(&self, go_on: GoOn<'_>) -> Option<Notes> {
+    pub(crate) fn node_conditions(&self, go_on: GoOn<'_>) -> Option<NodeConditions> {
         Some(match self {
             Self::Own(checker, legs, curve) => {
-                curve.with_places(checker.notes_with(|i| legs[i], go_on)?)
+                curve.with_places(checker.node_conditions_with(|i| legs[i], go_on)?)
             }
-            Self::Other(checker, map) => in_input(map, checker.notes_with(go_on)?),
+            Self::Other(checker, map) => in_input(map, checker.node_conditions_with(go_on)?),
         })
     }
 }

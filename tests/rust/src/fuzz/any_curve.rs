@@ -57,7 +57,7 @@ pub(super) fn run(data: &[u8]) {
             assert_eq!(open, checker.undecided(segment, criterion).is_some(), "{record:?}");
         }
     }
-    let notes = checker.notes();
+    let notes = checker.node_conditions();
     assert!(notes.oscillations.iter().all(|o| o.crossings >= o.least || !o.satisfied));
 }
 
@@ -98,11 +98,11 @@ fn legs(bytes: &mut Bytes<'_>) {
         return readable(&error);
     }
     let shape = polygon_shape(&polygon, &tolerances);
-    assert_eq!(shape.calls.len(), polygon.segments());
+    assert_eq!(shape.required.len(), polygon.segments());
     // Legs that are not finite make no curve, but a checker that is asked says no.
     let report = check(&polygon, |i| legs[i], criteria, tolerances);
     consistent(&report, &polygon);
-    let _ = Checker::new(&polygon, criteria, tolerances).notes(|i| legs[i]);
+    let _ = Checker::new(&polygon, criteria, tolerances).node_conditions(|i| legs[i]);
 }
 
 /// Some piecewise Bézier curve, by any constructor; lengths that do not fit now and then.

@@ -223,7 +223,7 @@ impl<'a> Bytes<'a> {
     /// Criteria, mostly the default.
     pub fn criteria(&mut self) -> Criteria {
         match self.below(4) {
-            0 => Criteria::EVERY,
+            0 => Criteria::ALL,
             1 => {
                 let chosen = self.byte();
                 let bit = |c: &Criterion| chosen >> (*c as usize) & 1 == 1;

@@ -63,7 +63,7 @@ where
     questions(spline.curve(), bytes);
     assert_eq!(spline.tension().len(), polygon.points().len());
     assert_eq!(spline.tangents().len(), polygon.points().len());
-    let checked = spline.check(Criteria::EVERY, Tolerances::default());
+    let checked = spline.check(Criteria::ALL, Tolerances::default());
     let refused = |error: InputError| panic!("a curve refuses its own polygon: {error}");
     let report = checked.unwrap_or_else(refused);
     assert!(!report.to_string().is_empty());
@@ -119,7 +119,7 @@ pub(super) fn questions(curve: &dyn Curve, bytes: &mut Bytes<'_>) {
     }
     for order in 0..6 {
         if let Ok(many) = curve.evaluate_many(&queries, order, Side::Right) {
-            assert_eq!(many.len(), queries.len() * curve.cubic().dimension().len());
+            assert_eq!(many.len(), queries.len() * curve.cubic().dimension().count());
         }
     }
     lengths(curve, first, last, bytes);

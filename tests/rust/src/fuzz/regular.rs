@@ -87,7 +87,7 @@ fn batches(curve: &dyn Curve, bytes: &mut Bytes<'_>) {
     let side = if bytes.flag() { Side::Left } else { Side::Right };
     for order in 0..3 {
         let many = curve.evaluate_many(&u, order, side).unwrap();
-        let columns = curve.cubic().dimension().len();
+        let columns = curve.cubic().dimension().count();
         for (&u, row) in u.iter().zip(many.chunks(columns)) {
             let alone = curve.evaluate(u, order, side).to_array();
             let same = row.iter().zip(alone).all(|(x, y)| x.to_bits() == y.to_bits());

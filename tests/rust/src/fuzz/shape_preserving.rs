@@ -127,7 +127,7 @@ impl Judged<'_, '_> {
         } else {
             assert!(!proved, "{status:?}\n{}", fit.report);
         }
-        assert_eq!(status == Status::Solved, fit.outcome.faults.is_empty());
+        assert_eq!(status == Status::Solved, fit.outcome.violations.is_empty());
         if self.must_solve {
             assert_eq!(status, Status::Solved, "{:?}\n{}", self.polygon, fit.report);
         }

@@ -4,7 +4,7 @@
 
 use serde::{Serialize, de::DeserializeOwned};
 use shapespline::{
-    criteria::{InflectionCount, Notes},
+    criteria::{InflectionCount, NodeConditions},
     geometry::ReparametrizedCubic,
     monotone::{MonotoneMany, PiecewisePolynomial},
     prelude::*,
@@ -43,12 +43,12 @@ pub(super) fn run(data: &[u8]) {
         }
         8 => {
             let make = |b: &mut Bytes<'_>| -> Option<ShapeReport> {
-                nu(b)?.check(Criteria::EVERY, Tolerances::default()).ok()
+                nu(b)?.check(Criteria::ALL, Tolerances::default()).ok()
             };
             read(&mut bytes, honest, make, |r, _| assert!(!r.to_string().is_empty()));
         }
         _ => {
-            let make = |_: &mut Bytes<'_>| -> Option<(Notes, InflectionCount)> { None };
+            let make = |_: &mut Bytes<'_>| -> Option<(NodeConditions, InflectionCount)> { None };
             read(&mut bytes, honest, make, |_, _| {});
         }
     }

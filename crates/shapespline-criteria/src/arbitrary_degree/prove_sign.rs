@@ -5,18 +5,18 @@
 use glam::DVec3;
 use shapespline_geometry::polynomial::{Polynomial, Sign};
 
-use super::{Piece, Segment, swing::swings_once, turning::turns_at_nodes};
+use super::{Piece, Segment, single_sign_change::has_single_sign_change, turning::turns_at_nodes};
 use crate::{
-    Calls, Criterion,
-    faults::{Cones, LINE_PART},
+    Criterion, Requirements,
     regular::Hodograph,
+    violations::{Cones, LINE_PART},
 };
 
 /// What a segment is asked, and by which vectors of the polygon.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Question {
     pub(crate) criterion: Criterion,
-    pub(crate) calls: Calls,
+    pub(crate) required: Requirements,
     /// Unit binormal vectors at the two nodes.
     pub(crate) normals: [DVec3; 2],
     /// Those at the nodes beside them, and the unit chord, by which turning goes.
@@ -28,7 +28,7 @@ pub(crate) struct Question {
 impl Question {
     /// The sign that the torsion has to have.
     pub(crate) fn torsion_sign(&self) -> f64 {
-        if self.calls.any(Calls::RIGHT_TORSION) { 1.0 } else { -1.0 }
+        if self.required.any(Requirements::RIGHT_TORSION) { 1.0 } else { -1.0 }
     }
 
     /// The parts of the segment on which a cone condition is asked, each with its cone: axis and
@@ -38,7 +38,7 @@ impl Question {
         if self.criterion == Criterion::Coplanarity {
             let (epsilon, normals) = self.cones.plane;
             for normal in normals {
-                if self.calls.any(Calls::COPLANARITY) {
+                if self.required.any(Requirements::COPLANARITY) {
                     parts.push(([0.0, 1.0], normal, epsilon));
                 } else {
                     let [left, right] = self.cones.parts;
@@ -48,10 +48,10 @@ impl Question {
             }
         } else {
             let (epsilon, [start, end]) = self.cones.line;
-            if self.calls.any(Calls::LINE_AT_START) {
+            if self.required.any(Requirements::LINE_AT_START) {
                 parts.push(([0.0, LINE_PART], start, epsilon));
             }
-            if self.calls.any(Calls::LINE_AT_END) {
+            if self.required.any(Requirements::LINE_AT_END) {
                 parts.push(([1.0 - LINE_PART, 1.0], end, epsilon));
             }
         }
@@ -60,14 +60,14 @@ impl Question {
 }
 
 /// The verdict, with parameters local to the segment.
-pub(crate) fn decide(segment: &Segment, question: &Question) -> Sign {
+pub(crate) fn prove_sign(segment: &Segment, question: &Question) -> Sign {
     let [p, q] = question.normals;
     match question.criterion {
         Criterion::Convexity => turns(segment, p).and(turns(segment, q)),
         Criterion::GlobalConvexity => [p, q].into_iter().fold(Sign::Positive, |known, n| {
             known.and(turns(segment, n)).and(sees_its_start(segment, n))
         }),
-        Criterion::Inflection => swings_once(segment, [p, q]),
+        Criterion::Inflection => has_single_sign_change(segment, [p, q]),
         Criterion::Turning => turns_at_nodes(segment, question),
         Criterion::Torsion => {
             let sign = question.torsion_sign();

@@ -8,11 +8,11 @@ use shapespline_geometry::polynomial::Sign;
 
 use super::{Around, NodeCondition, NodeRecord};
 use crate::{
-    Calls, Criterion,
-    calls::{plane_is_known, separation_between},
-    faults::Cones,
-    general::{Question, Segment, decide, is_never_outside, measure, minimum},
+    Criterion, Requirements,
+    arbitrary_degree::{Question, Segment, is_never_outside, margin, minimum, prove_sign},
     margin::Margin,
+    requirements::{inflection_parameter_between, plane_is_known},
+    violations::Cones,
 };
 
 /// The two segments that meet in the middle point, as one between the outer two.
@@ -47,10 +47,10 @@ impl<'a, 'c, 'p> Pair<'a, 'c, 'p> {
         Some(Self { around, ends: [before, end], joined, binormals })
     }
 
-    fn question(&self, criterion: Criterion, calls: Calls, cones: Cones) -> Question {
+    fn question(&self, criterion: Criterion, required: Requirements, cones: Cones) -> Question {
         // Turning is not asked here.
         let (beside, chord) = ([DVec3::ZERO; 2], DVec3::ZERO);
-        Question { criterion, calls, normals: self.normals(), beside, chord, cones }
+        Question { criterion, required, normals: self.normals(), beside, chord, cones }
     }
 
     fn normals(&self) -> [DVec3; 2] {
@@ -90,10 +90,10 @@ impl<'a, 'c, 'p> Pair<'a, 'c, 'p> {
         } else {
             (Criterion::Convexity, NodeCondition::ConvexNeighbourhood)
         };
-        let question = self.question(criterion, Calls::of(criterion), Cones::none());
-        let mut margin = measure(&self.joined, &question);
+        let question = self.question(criterion, Requirements::of(criterion), Cones::none());
+        let mut margin = margin(&self.joined, &question);
         let keeps = if inflects {
-            decide(&self.joined, &question) == Sign::Positive
+            prove_sign(&self.joined, &question) == Sign::Positive
         } else {
             // Equality is all that a curve through the node can reach.
             margin.value >= -zero
@@ -126,10 +126,11 @@ impl<'a, 'c, 'p> Pair<'a, 'c, 'p> {
         let gamma = p.dot(after);
         if gamma.abs() > tolerances.zero {
             let right = gamma > 0.0;
-            let calls = if right { Calls::RIGHT_TORSION } else { Calls::LEFT_TORSION };
-            let question = self.question(Criterion::Torsion, calls, Cones::none());
-            let holds = decide(&self.joined, &question) == Sign::Positive;
-            let margin = self.sided(measure(&self.joined, &question), holds);
+            let required =
+                if right { Requirements::RIGHT_TORSION } else { Requirements::LEFT_TORSION };
+            let question = self.question(Criterion::Torsion, required, Cones::none());
+            let holds = prove_sign(&self.joined, &question) == Sign::Positive;
+            let margin = self.sided(margin(&self.joined, &question), holds);
             return Some(self.record(NodeCondition::NeighbourhoodTorsion, holds, margin));
         }
         if !spatial || !plane_is_known(p, q, [p.length(), q.length()], &tolerances) {
@@ -153,7 +154,7 @@ impl<'a, 'c, 'p> Pair<'a, 'c, 'p> {
         let segments = self.segments();
         let [h0, h1] = segments.map(|i| polygon.spacing(i));
         let binormals = [segments[0], segments[1] + 1].map(|node| polygon.binormal(node));
-        let flip = separation_between(polygon, segments, binormals);
+        let flip = inflection_parameter_between(polygon, segments, binormals);
         // From the parameter to the local one, which runs at another rate on each segment.
         let local = |s: f64| {
             let u = s * (h0 + h1);
@@ -164,9 +165,10 @@ impl<'a, 'c, 'p> Pair<'a, 'c, 'p> {
             parts: [local(0.5 * flip), local(0.5 * (1.0 + flip))],
             ..Cones::none()
         };
-        let question = self.question(Criterion::Coplanarity, Calls::SPLIT_COPLANARITY, cones);
-        let holds = decide(&self.joined, &question) == Sign::Positive;
-        (holds, measure(&self.joined, &question))
+        let question =
+            self.question(Criterion::Coplanarity, Requirements::SPLIT_COPLANARITY, cones);
+        let holds = prove_sign(&self.joined, &question) == Sign::Positive;
+        (holds, margin(&self.joined, &question))
     }
 
     /// Of a convex neighbourhood: a curve through the middle point has to be straight or to inflect

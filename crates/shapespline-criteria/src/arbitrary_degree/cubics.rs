@@ -4,9 +4,9 @@
 
 use shapespline_geometry::DVec3;
 
-use super::{CurveChecker, CurveError, checker::Found};
+use super::{CurveChecker, CurveError, checker::Scan};
 use crate::{
-    Calls, Criterion, Faults, Undecided,
+    Criterion, Requirements, Undecided, Violations,
     checker::Cubic,
     rounding::{Lean, UNIT},
 };
@@ -32,9 +32,9 @@ impl CurveChecker<'_> {
     /// A segment that is one polynomial cubic, between its own end points.
     pub(super) fn cubic(&self, i: usize) -> Option<Cubic> {
         // The conditions on single cubics do not know what is zero by construction.
-        let beside = Calls::STRAIGHT_BEFORE.and(Calls::STRAIGHT_AFTER);
+        let beside = Requirements::STRAIGHT_BEFORE.and(Requirements::STRAIGHT_AFTER);
         let subdivided = self.curve.degree() != 3 || self.curve.is_rational();
-        if subdivided || self.checker().calls()[i].any(beside) {
+        if subdivided || self.checker().requirements()[i].any(beside) {
             return None;
         }
         let p = self.curve.piece(self.single(i)?);
@@ -47,7 +47,7 @@ impl CurveChecker<'_> {
     /// and of those that are the ones that are not proved to keep the shape. Many of these are judged at once
     /// by the chords of the polygon; those that end off its points by more than rounding, by their own.
     pub(super) fn open_segments(&self) -> Vec<usize> {
-        let n = self.checker().calls().len();
+        let n = self.checker().requirements().len();
         if self.curve.degree() != 3 || self.curve.is_rational() {
             return (0..n).collect();
         }
@@ -60,7 +60,7 @@ impl CurveChecker<'_> {
         };
         // Of several pieces nothing is known yet: what is said of these legs does not count.
         let legs = |i: usize| self.cubic(i).map_or([DVec3::ZERO; 2], |cubic| cubic.legs);
-        let faults = self.checker().all_faults(legs);
+        let violations = self.checker().all_unproved(legs);
         let unproved = |i: usize| match self.cubic(i) {
             Some(cubic) => {
                 ends_off(i) && !self.checker().judge(i, &cubic, Lean::Against).is_empty()
@@ -68,8 +68,8 @@ impl CurveChecker<'_> {
             None => true,
         };
         let apart = (0..n).filter(|&i| unproved(i));
-        let own = faults.iter().map(|fault| fault.0).filter(|&i| !ends_off(i));
-        let corners = self.corner_faults().into_iter().map(|fault| fault.0);
+        let own = violations.iter().map(|violation| violation.0).filter(|&i| !ends_off(i));
+        let corners = self.corner_violations().into_iter().map(|violation| violation.0);
         let mut open: Vec<usize> = own.chain(apart).chain(corners).collect();
         open.sort_unstable();
         open.dedup();
@@ -77,16 +77,17 @@ impl CurveChecker<'_> {
     }
 
     /// What is not proved of a segment that is one polynomial cubic, and what is violated.
-    pub(super) fn cubic_verdict(&self, i: usize, cubic: &Cubic) -> [Faults; 2] {
-        [Lean::Against, Lean::For]
-            .map(|lean| self.checker().judge(i, cubic, lean).and(self.corner_faults_of(i, lean)))
+    pub(super) fn cubic_verdict(&self, i: usize, cubic: &Cubic) -> [Violations; 2] {
+        [Lean::Against, Lean::For].map(|lean| {
+            self.checker().judge(i, cubic, lean).and(self.corner_violations_of(i, lean))
+        })
     }
 
-    pub(super) fn check_cubic(&self, i: usize, cubic: &Cubic) -> Found {
-        let mut found = Found::default();
+    pub(super) fn check_cubic(&self, i: usize, cubic: &Cubic) -> Scan {
+        let mut found = Scan::default();
         let [open, violated] = self.cubic_verdict(i, cubic);
         for criterion in Criterion::ALL {
-            let of = Faults::of(criterion);
+            let of = Violations::of(criterion);
             if violated.any(of) {
                 found.records.push(self.record(i, criterion));
             } else if open.any(of) {

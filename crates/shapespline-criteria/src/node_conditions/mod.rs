@@ -25,10 +25,10 @@ use glam::DVec3;
 
 use self::neighbourhood::Pair;
 use crate::{
-    Calls, Checker, Criterion,
-    calls::plane_normal,
-    general::{Segment, minimum},
+    Checker, Criterion, Requirements,
+    arbitrary_degree::{Segment, minimum},
     margin::Margin,
+    requirements::plane_normal,
 };
 
 /// A condition at a node.
@@ -90,7 +90,7 @@ pub struct NodeRecord {
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Oscillation {
-    /// Index of the segment, which calls for coplanarity.
+    /// Index of the segment, which requires coplanarity.
     pub segment: usize,
     /// How often it crosses the plane between its points.
     pub crossings: usize,
@@ -107,70 +107,70 @@ pub struct Oscillation {
 /// What the paper says beyond the criteria.
 #[derive(Debug, Clone, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Notes {
+pub struct NodeConditions {
     /// Conditions at the nodes to which they apply, ascending.
     pub nodes: Vec<NodeRecord>,
-    /// Oscillations of the segments that call for coplanarity, ascending.
+    /// Oscillations of the segments that require coplanarity, ascending.
     pub oscillations: Vec<Oscillation>,
 }
 
 impl Checker<'_> {
     /// What the paper says of nodes and of oscillation, as information, given end legs. Cost and
     /// memory O(N), much slower than a check.
-    pub fn notes<L>(&self, legs: L) -> Notes
+    pub fn node_conditions<L>(&self, legs: L) -> NodeConditions
     where
         L: Fn(usize) -> [DVec3; 2],
     {
-        self.notes_with(legs, &|| ControlFlow::Continue(())).unwrap_or_default()
+        self.node_conditions_with(legs, &|| ControlFlow::Continue(())).unwrap_or_default()
     }
 
-    /// As [`Checker::notes`], but calls `go_on` before each node and segment, and returns `None` once that
+    /// As [`Checker::node_conditions`], but calls `go_on` before each node and segment, and returns `None` once that
     /// breaks.
-    pub fn notes_with<L>(
+    pub fn node_conditions_with<L>(
         &self,
         legs: L,
         go_on: &(dyn Fn() -> ControlFlow<()> + Sync),
-    ) -> Option<Notes>
+    ) -> Option<NodeConditions>
     where
         L: Fn(usize) -> [DVec3; 2],
     {
-        notes(self, |i| Segment::cubic(legs(i), self.polygon().chord(i)), go_on)
+        node_conditions(self, |i| Segment::cubic(legs(i), self.polygon().chord(i)), go_on)
     }
 }
 
-pub(crate) fn notes(
+pub(crate) fn node_conditions(
     checker: &Checker<'_>,
     segment: impl Fn(usize) -> Segment,
     go_on: &(dyn Fn() -> ControlFlow<()> + Sync),
-) -> Option<Notes> {
+) -> Option<NodeConditions> {
     let polygon = checker.polygon();
     let n = polygon.segments();
-    let mut notes = Notes::default();
+    let mut conditions = NodeConditions::default();
     // Closed data: the last node is the first.
     let nodes = if polygon.is_closed() { 0..n } else { 1..n };
-    let calls = Calls::of_polygon(polygon, &checker.tolerances());
-    let spatial = calls.iter().any(|c| c.any(Calls::of(Criterion::Torsion)));
+    let required = Requirements::of_polygon(polygon, &checker.tolerances());
+    let spatial = required.iter().any(|c| c.any(Requirements::of(Criterion::Torsion)));
     for node in nodes {
         if go_on().is_break() {
             return None;
         }
         let sides = [segment((node + n - 1) % n), segment(node)];
         let around = Around { checker, node, sides };
-        notes.nodes.extend(around.compatibility(node, 0..2));
-        notes.nodes.extend(around.torsion());
+        conditions.nodes.extend(around.compatibility(node, 0..2));
+        conditions.nodes.extend(around.torsion());
         if let Some(pair) = Pair::of(&around) {
-            notes.nodes.push(pair.bend(&segment));
-            notes.nodes.extend(pair.twist(spatial));
+            conditions.nodes.push(pair.bend(&segment));
+            conditions.nodes.extend(pair.twist(spatial));
         }
     }
-    let coplanar = Calls::of(Criterion::Coplanarity);
-    for i in (0..n).filter(|&i| calls[i].any(coplanar)) {
+    let coplanar = Requirements::of(Criterion::Coplanarity);
+    for i in (0..n).filter(|&i| required[i].any(coplanar)) {
         if go_on().is_break() {
             return None;
         }
-        notes.oscillations.push(oscillation(checker, i, &segment(i)));
+        conditions.oscillations.push(oscillation(checker, i, &segment(i)));
     }
-    Some(notes)
+    Some(conditions)
 }
 
 /// A node and the segments that meet there.

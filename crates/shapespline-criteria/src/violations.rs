@@ -3,14 +3,14 @@
 //! The verdict on one segment: which of the exact conditions fail.
 
 use glam::DVec3;
-use shapespline_geometry::{DataPolygon, bernstein::quadratic_is_positive, near_one};
+use shapespline_geometry::{DataPolygon, bernstein::quadratic_is_positive, normalized_scale};
 
 use crate::{
-    Calls, Criterion, Tolerances,
-    calls::separation_between,
+    Criterion, Requirements, Tolerances,
     cone::{Axis, Field, Quadratic},
     global::is_globally_convex,
     regular::is_regular,
+    requirements::inflection_parameter_between,
     rounding::{Coarse, Lean, Rounded, Signs, UNIT, leg_error, sum},
 };
 
@@ -19,9 +19,9 @@ use crate::{
 /// decides which tensions can mend it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Faults(u32);
+pub struct Violations(u32);
 
-impl Faults {
+impl Violations {
     /// Convexity, at node m: `ω(u_m)·P_n ≤ 0` (K₀₁).
     pub const CONVEXITY_AT_START: Self = Self(1);
     /// Convexity, at node m+1 (K₀₂).
@@ -83,14 +83,14 @@ impl Faults {
         self.0 == 0
     }
 
-    /// Whether any fault of `other` is among these.
+    /// Whether any violation of `other` is among these.
     #[inline]
     #[must_use]
     pub fn any(self, other: Self) -> bool {
         self.0 & other.0 != 0
     }
 
-    /// Whether all faults of `other` are among these.
+    /// Whether all violations of `other` are among these.
     #[must_use]
     pub fn contains(self, other: Self) -> bool {
         other.0 & !self.0 == 0
@@ -102,7 +102,7 @@ impl Faults {
         Self(self.0 & other.0)
     }
 
-    /// The faults together.
+    /// The violations together.
     #[inline]
     #[must_use]
     pub const fn and(self, other: Self) -> Self {
@@ -110,16 +110,16 @@ impl Faults {
     }
 
     #[inline]
-    fn add(&mut self, fault: Self, fails: bool) {
+    fn add(&mut self, violation: Self, fails: bool) {
         if fails {
-            self.0 |= fault.0;
+            self.0 |= violation.0;
         }
     }
 }
 
 /// A segment and the polygon around it, as the conditions see them: all products of legs at once.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Situation {
+pub(crate) struct SegmentGeometry {
     /// End legs and chord, brought to a common scale near one.
     pub(crate) a: DVec3,
     pub(crate) c: DVec3,
@@ -136,20 +136,20 @@ pub(crate) struct Situation {
     pub(crate) slack: f64,
 }
 
-impl Situation {
+impl SegmentGeometry {
     /// With the binormal vectors at the node before, at the two nodes of the segment, and at the node
     /// after; `far`: the largest coordinate of the two end points.
     #[inline]
     pub(crate) fn new(legs: [DVec3; 2], chord: DVec3, binormals: [DVec3; 4], far: f64) -> Self {
         let size = chord.abs().max_element();
-        let (legs, chord) = near_one(legs, chord);
+        let (legs, chord) = normalized_scale(legs, chord);
         // In the unit that the legs have now, which is mostly the one they had.
         let far = far / size * chord.abs().max_element();
         let slack = leg_error(far, sum(legs[0]) + sum(chord) + sum(legs[1]));
         Self::of_scaled(legs, chord, binormals, slack)
     }
 
-    /// The same of legs and chord [near one](near_one) in size.
+    /// The same of legs and chord [near one](normalized_scale) in size.
     #[inline(always)]
     pub(crate) fn of_scaled(
         [a, c]: [DVec3; 2],
@@ -225,12 +225,12 @@ impl Cones {
         polygon: &DataPolygon,
         segment: usize,
         [before, own, after]: [DVec3; 3],
-        calls: Calls,
+        required: Requirements,
         tolerances: &Tolerances,
     ) -> Self {
         let binormals = [before.cross(own), own.cross(after)];
-        let parts = if calls.any(Calls::SPLIT_COPLANARITY) {
-            let flip = separation_between(polygon, [segment; 2], binormals);
+        let parts = if required.any(Requirements::SPLIT_COPLANARITY) {
+            let flip = inflection_parameter_between(polygon, [segment; 2], binormals);
             [0.5 * flip, 0.5 * (1.0 + flip)]
         } else {
             [0.0, 1.0]
@@ -253,48 +253,50 @@ impl Cones {
 /// Collinearity is asked on this part of a segment next to the node.
 pub(crate) const LINE_PART: f64 = 0.5;
 
-/// The calls that are not met beyond doubt: none, and there is no fault. A few signs without branches, within
+/// The requirements that are not met beyond doubt: none, and there is no violation. A few signs without branches, within
 /// coarse bounds; where those are not enough nothing is decided.
 #[inline(always)]
-pub(crate) fn doubtful(s: &Situation, bounds: Coarse, calls: u32) -> u32 {
+pub(crate) fn unproved(s: &SegmentGeometry, bounds: Coarse, required: u32) -> u32 {
     let ([a0, g0, b0], [a1, g1, b1]) = (s.omega_along(s.p), s.omega_along(s.q));
     let (before, after) = (s.omega[0].dot(s.before), s.omega[2].dot(s.after));
     let (determinant, Coarse { turns: [o, p, q, r], twist }) = (s.determinant(), bounds);
-    let met = |holds: bool, call: Calls| if holds { call.bits() } else { 0 };
+    let met = |holds: bool, call: Requirements| if holds { call.bits() } else { 0 };
     // A middle coefficient that is not negative needs no root.
     let start = (a0 > p) & (b1 > q);
     let convex = start & (a1 > q) & (b0 > p) & (g0 >= p) & (g1 >= q);
     let inflecting = start & (a1 < -q) & (b0 < -p);
     // Nor does the chord turn another way than the ends then.
-    let met = met(convex, Calls::CONVEXITY.and(Calls::GLOBAL_CONVEXITY))
-        | met(inflecting, Calls::INFLECTION)
+    let met = met(convex, Requirements::CONVEXITY.and(Requirements::GLOBAL_CONVEXITY))
+        | met(inflecting, Requirements::INFLECTION)
         // (a×L)·P = (a×b)·P + (a×c)·P, and (L×c)·P likewise.
-        | met((a0 > p) & (a0 + g0 > 2.0 * p), Calls::TURNING_AT_START)
-        | met((b1 > q) & (b1 + g1 > 2.0 * q), Calls::TURNING_AT_END)
-        | met((a1 > q) & (b0 > p), Calls::TURNS_ALIKE)
-        | met((a1 < -q) & (b0 < -p), Calls::TURNS_APART)
-        | met(before > o, Calls::BEFORE_ALIKE)
-        | met(before < -o, Calls::BEFORE_APART)
-        | met(after > r, Calls::AFTER_ALIKE)
-        | met(after < -r, Calls::AFTER_APART)
-        | met(determinant > twist, Calls::RIGHT_TORSION)
-        | met(determinant < -twist, Calls::LEFT_TORSION);
-    calls & !met
+        | met((a0 > p) & (a0 + g0 > 2.0 * p), Requirements::TURNING_AT_START)
+        | met((b1 > q) & (b1 + g1 > 2.0 * q), Requirements::TURNING_AT_END)
+        | met((a1 > q) & (b0 > p), Requirements::TURNS_ALIKE)
+        | met((a1 < -q) & (b0 < -p), Requirements::TURNS_APART)
+        | met(before > o, Requirements::BEFORE_ALIKE)
+        | met(before < -o, Requirements::BEFORE_APART)
+        | met(after > r, Requirements::AFTER_ALIKE)
+        | met(after < -r, Requirements::AFTER_APART)
+        | met(determinant > twist, Requirements::RIGHT_TORSION)
+        | met(determinant < -twist, Requirements::LEFT_TORSION);
+    required & !met
 }
 
-/// What fails on a segment; doubts are counted as `lean` says. The cones are made where a call needs them.
+/// What fails on a segment; doubts are counted as `lean` says. The cones are made where a requirement needs them.
 #[inline]
-pub(crate) fn faults(
-    s: &Situation,
-    calls: Calls,
+pub(crate) fn violations(
+    s: &SegmentGeometry,
+    required: Requirements,
     lean: Lean,
     cones: impl FnOnce() -> Cones,
-) -> Faults {
-    let faults = sign_faults(s, calls, lean);
-    if calls.any(Calls::of(Criterion::Coplanarity).and(Calls::of(Criterion::Collinearity))) {
-        return faults.and(cone_faults(s, calls, &cones(), lean));
+) -> Violations {
+    let violations = sign_violations(s, required, lean);
+    if required.any(
+        Requirements::of(Criterion::Coplanarity).and(Requirements::of(Criterion::Collinearity)),
+    ) {
+        return violations.and(cone_violations(s, required, &cones(), lean));
     }
-    faults
+    violations
 }
 
 /// Whether `α(1−t)² + γt(1−t) + βt²` is positive: Lemma 5.1, with the rounding of its root.
@@ -304,86 +306,99 @@ pub(crate) fn is_positive([alpha, gamma, beta]: [Rounded; 3], lean: Lean) -> boo
     quadratic_is_positive(alpha.toward(lean), root.toward(lean), beta.toward(lean))
 }
 
-/// The faults of convexity, inflection, turning and torsion, and of a curve that stops.
+/// The violations of convexity, inflection, turning and torsion, and of a curve that stops.
 #[inline]
-pub(crate) fn sign_faults(s: &Situation, calls: Calls, lean: Lean) -> Faults {
-    let mut stops = Faults::default();
-    stops.add(Faults::NOT_REGULAR, calls.any(Calls::REGULAR) && !is_regular(s, calls));
+pub(crate) fn sign_violations(
+    s: &SegmentGeometry,
+    required: Requirements,
+    lean: Lean,
+) -> Violations {
+    let mut stops = Violations::default();
+    stops.add(
+        Violations::NOT_REGULAR,
+        required.any(Requirements::REGULAR) && !is_regular(s, required),
+    );
     let coarse = Signs::coarse(s);
-    let faults = faults_of_signs(&coarse, calls, Lean::Against);
-    if faults.is_empty() || faults == faults_of_signs(&coarse, calls, Lean::For) {
-        return faults.and(stops);
+    let violations = violations_of_signs(&coarse, required, Lean::Against);
+    if violations.is_empty() || violations == violations_of_signs(&coarse, required, Lean::For) {
+        return violations.and(stops);
     }
-    faults_of_signs(&Signs::fine(s), calls, lean).and(stops)
+    violations_of_signs(&Signs::fine(s), required, lean).and(stops)
 }
 
 #[inline(always)]
-fn faults_of_signs(signs: &Signs, calls: Calls, lean: Lean) -> Faults {
-    let mut faults = Faults::default();
+fn violations_of_signs(signs: &Signs, required: Requirements, lean: Lean) -> Violations {
+    let mut violations = Violations::default();
     // Written so that a NaN fails.
     let positive = |x: Rounded| x.is_positive(lean);
     let Signs { omega: omega @ [[a0, g0, b0], [a1, g1, b1]], beside, twist } = *signs;
-    if calls.any(Calls::CONVEXITY) {
+    if required.any(Requirements::CONVEXITY) {
         let (start, end) = (positive(a0) && positive(a1), positive(b0) && positive(b1));
-        faults.add(Faults::CONVEXITY_AT_START, !start);
-        faults.add(Faults::CONVEXITY_AT_END, !end);
+        violations.add(Violations::CONVEXITY_AT_START, !start);
+        violations.add(Violations::CONVEXITY_AT_END, !end);
         let between = is_positive([a0, g0, b0], lean) && is_positive([a1, g1, b1], lean);
-        faults.add(Faults::CONVEXITY_BETWEEN, start && end && !between);
-    } else if calls.any(Calls::INFLECTION) {
-        faults.add(Faults::INFLECTION_AT_START, !(positive(a0) && positive(-a1)));
-        faults.add(Faults::INFLECTION_AT_END, !(positive(-b0) && positive(b1)));
+        violations.add(Violations::CONVEXITY_BETWEEN, start && end && !between);
+    } else if required.any(Requirements::INFLECTION) {
+        violations.add(Violations::INFLECTION_AT_START, !(positive(a0) && positive(-a1)));
+        violations.add(Violations::INFLECTION_AT_END, !(positive(-b0) && positive(b1)));
     }
-    if calls.any(Calls::of(Criterion::Turning)) {
+    if required.any(Requirements::of(Criterion::Turning)) {
         // Where the signs of two binormal vectors agree, oppose each other, or are not asked for.
-        let sided = |x: Rounded, alike: Calls, apart: Calls| {
-            (!calls.any(alike) || positive(x)) && (!calls.any(apart) || positive(-x))
+        let sided = |x: Rounded, alike: Requirements, apart: Requirements| {
+            (!required.any(alike) || positive(x)) && (!required.any(apart) || positive(-x))
         };
-        let pair = |x: Rounded| sided(x, Calls::TURNS_ALIKE, Calls::TURNS_APART);
+        let pair = |x: Rounded| sided(x, Requirements::TURNS_ALIKE, Requirements::TURNS_APART);
         // The chord turns as (a×L)·P = α + γ, and (L×c)·P' = β + γ.
         let at = |own: Rounded, middle: Rounded, other: Rounded| {
             positive(own) && positive(own + middle) && pair(other)
         };
-        let start = !calls.any(Calls::TURNING_AT_START) || at(a0, g0, a1);
-        let end = !calls.any(Calls::TURNING_AT_END) || at(b1, g1, b0);
-        let before = sided(beside[0], Calls::BEFORE_ALIKE, Calls::BEFORE_APART);
-        let after = sided(beside[1], Calls::AFTER_ALIKE, Calls::AFTER_APART);
-        faults.add(Faults::TURNING_AT_START, !(start && before));
-        faults.add(Faults::TURNING_AT_END, !(end && after));
+        let start = !required.any(Requirements::TURNING_AT_START) || at(a0, g0, a1);
+        let end = !required.any(Requirements::TURNING_AT_END) || at(b1, g1, b0);
+        let before = sided(beside[0], Requirements::BEFORE_ALIKE, Requirements::BEFORE_APART);
+        let after = sided(beside[1], Requirements::AFTER_ALIKE, Requirements::AFTER_APART);
+        violations.add(Violations::TURNING_AT_START, !(start && before));
+        violations.add(Violations::TURNING_AT_END, !(end && after));
     }
-    if calls.any(Calls::GLOBAL_CONVEXITY) {
-        faults.add(Faults::GLOBAL_CONVEXITY, !is_globally_convex(&omega, lean));
+    if required.any(Requirements::GLOBAL_CONVEXITY) {
+        violations.add(Violations::GLOBAL_CONVEXITY, !is_globally_convex(&omega, lean));
     }
-    if calls.any(Calls::RIGHT_TORSION) {
-        faults.add(Faults::TORSION, !positive(twist));
-    } else if calls.any(Calls::LEFT_TORSION) {
-        faults.add(Faults::TORSION, !positive(-twist));
+    if required.any(Requirements::RIGHT_TORSION) {
+        violations.add(Violations::TORSION, !positive(twist));
+    } else if required.any(Requirements::LEFT_TORSION) {
+        violations.add(Violations::TORSION, !positive(-twist));
     }
-    faults
+    violations
 }
 
-/// The faults of coplanarity and collinearity.
-pub(crate) fn cone_faults(s: &Situation, calls: Calls, cones: &Cones, lean: Lean) -> Faults {
-    let mut faults = Faults::default();
-    if calls.any(Calls::COPLANARITY.and(Calls::SPLIT_COPLANARITY)) {
+/// The violations of coplanarity and collinearity.
+pub(crate) fn cone_violations(
+    s: &SegmentGeometry,
+    required: Requirements,
+    cones: &Cones,
+    lean: Lean,
+) -> Violations {
+    let mut violations = Violations::default();
+    if required.any(Requirements::COPLANARITY.and(Requirements::SPLIT_COPLANARITY)) {
         let (epsilon, normals) = cones.plane;
-        let axes = [(normals[0], s.p), (normals[1], s.q)].map(|(n, p)| Situation::plane_axis(n, p));
+        let axes =
+            [(normals[0], s.p), (normals[1], s.q)].map(|(n, p)| SegmentGeometry::plane_axis(n, p));
         let end_is_near =
             |f: &Field, end: usize| axes.iter().all(|n| f.end_is_inside(end, n, epsilon, lean));
         let is_near = |f: &Field| axes.iter().all(|n| f.is_inside(n, epsilon, lean));
         let omega = s.omega_field();
         let (start, end) = (end_is_near(&omega, 0), end_is_near(&omega, 2));
-        faults.add(Faults::COPLANARITY_AT_START, !start);
-        faults.add(Faults::COPLANARITY_AT_END, !end);
-        if calls.any(Calls::COPLANARITY) {
-            faults.add(Faults::COPLANARITY_BETWEEN, start && end && !is_near(&omega));
+        violations.add(Violations::COPLANARITY_AT_START, !start);
+        violations.add(Violations::COPLANARITY_AT_END, !end);
+        if required.any(Requirements::COPLANARITY) {
+            violations.add(Violations::COPLANARITY_BETWEEN, start && end && !is_near(&omega));
         } else {
-            // A failure at the node itself is the fault above; here it is the rest of each part.
+            // A failure at the node itself is the violation above; here it is the rest of each part.
             let [left, right] = cones.parts;
             let (first, last) = (omega.part(0.0, left), omega.part(right, 1.0));
             let fails =
                 |f: &Field, node: bool, far: usize| !end_is_near(f, far) || (node && !is_near(f));
             let split = fails(&first, start, 2) || fails(&last, end, 0);
-            faults.add(Faults::COPLANARITY_SPLIT, split);
+            violations.add(Violations::COPLANARITY_SPLIT, split);
         }
     }
     let (epsilon, lines) = cones.line;
@@ -393,19 +408,19 @@ pub(crate) fn cone_faults(s: &Situation, calls: Calls, cones: &Cones, lean: Lean
         let ends = [node, far].map(|end| part.end_is_inside(end, line, epsilon, lean));
         [ends[0], ends[1], !(ends[0] && ends[1]) || part.is_inside(line, epsilon, lean)]
     };
-    if calls.any(Calls::LINE_AT_START) {
+    if required.any(Requirements::LINE_AT_START) {
         let part = s.tangent_field().part(0.0, LINE_PART);
         let [node, far, between] = holds(part, &lines[0], [0, 2]);
-        faults.add(Faults::LINE_AT_START, !node);
-        faults.add(Faults::LINE_AFTER_START, !far);
-        faults.add(Faults::LINE_INSIDE_START, !between);
+        violations.add(Violations::LINE_AT_START, !node);
+        violations.add(Violations::LINE_AFTER_START, !far);
+        violations.add(Violations::LINE_INSIDE_START, !between);
     }
-    if calls.any(Calls::LINE_AT_END) {
+    if required.any(Requirements::LINE_AT_END) {
         let part = s.tangent_field().part(1.0 - LINE_PART, 1.0);
         let [node, far, between] = holds(part, &lines[1], [2, 0]);
-        faults.add(Faults::LINE_AT_END, !node);
-        faults.add(Faults::LINE_BEFORE_END, !far);
-        faults.add(Faults::LINE_INSIDE_END, !between);
+        violations.add(Violations::LINE_AT_END, !node);
+        violations.add(Violations::LINE_BEFORE_END, !far);
+        violations.add(Violations::LINE_INSIDE_END, !between);
     }
-    faults
+    violations
 }

@@ -87,7 +87,7 @@ fn sizes(segment: &Segment) -> [f64; 2] {
 }
 
 /// The margin of a criterion that applies.
-pub(crate) fn measure(segment: &Segment, question: &Question) -> Margin {
+pub(crate) fn margin(segment: &Segment, question: &Question) -> Margin {
     let all = [0.0, 1.0];
     let [p, q] = question.normals;
     let [s2, s3] = sizes(segment);
@@ -113,7 +113,7 @@ pub(crate) fn measure(segment: &Segment, question: &Question) -> Margin {
             let end = |t: f64, sign: f64| {
                 let piece = if t == 0.0 { segment.pieces.first() } else { segment.pieces.last() };
                 let value = piece.map_or(f64::NAN, |piece| {
-                    let [x, y, size] = swing(&Jet { t, d: piece.jet(t) }, [p, q], s2);
+                    let [x, y, size] = sign_change(&Jet { t, d: piece.jet(t) }, [p, q], s2);
                     ratio(sign * x, size).min(ratio(sign * y, size))
                 });
                 Margin { value, at: t }
@@ -166,14 +166,14 @@ pub(crate) fn bend(jet: &Jet, normals: [DVec3; 2], s2: f64) -> f64 {
 }
 
 /// `ω·P, −ω·P'` and their size.
-fn swing(jet: &Jet, [p, q]: [DVec3; 2], s2: f64) -> [f64; 3] {
+fn sign_change(jet: &Jet, [p, q]: [DVec3; 2], s2: f64) -> [f64; 3] {
     let omega = jet.omega();
     [omega.dot(p), -omega.dot(q), jet.d[1].length() * s2]
 }
 
 /// How clearly one of the three conditions of [`super::swing`] holds.
 fn clearness(jet: &Jet, normals: [DVec3; 2], [s2, s3]: [f64; 2]) -> f64 {
-    let [x, y, size] = swing(jet, normals, s2);
+    let [x, y, size] = sign_change(jet, normals, s2);
     let (x, y) = (ratio(x, size), ratio(y, size));
     // ω' = γ' × γ'''.
     let rate = jet.d[1].cross(jet.d[3]);

@@ -5,27 +5,27 @@
 use glam::DVec3;
 use shapespline_geometry::{BezierPart, length, polynomial::Sign};
 
-use super::{Question, Segment, decide};
+use super::{Question, Segment, prove_sign};
 use crate::{
-    Calls, Checker, Criterion,
-    faults::{Situation, doubtful, faults},
+    Checker, Criterion, Requirements,
     regular::leads_along,
     rounding::{Coarse, LEG_ERROR, Lean, UNIT, sum},
+    violations::{SegmentGeometry, unproved, violations},
 };
 
 /// What is decided piece by piece: no part of a segment that begins or ends within a piece is asked.
-const BY_PIECES: Calls = Calls::CONVEXITY
-    .and(Calls::INFLECTION)
-    .and(Calls::RIGHT_TORSION)
-    .and(Calls::LEFT_TORSION)
-    .and(Calls::COPLANARITY)
-    .and(Calls::TURNING_AT_START)
-    .and(Calls::TURNING_AT_END)
-    .and(Calls::TURNING_PAIR)
-    .and(Calls::TURNING_BEFORE)
-    .and(Calls::TURNING_AFTER)
-    .and(Calls::REGULAR)
-    .and(Calls::LEGS);
+const BY_PIECES: Requirements = Requirements::CONVEXITY
+    .and(Requirements::INFLECTION)
+    .and(Requirements::RIGHT_TORSION)
+    .and(Requirements::LEFT_TORSION)
+    .and(Requirements::COPLANARITY)
+    .and(Requirements::TURNING_AT_START)
+    .and(Requirements::TURNING_AT_END)
+    .and(Requirements::TURNING_PAIR)
+    .and(Requirements::TURNING_BEFORE)
+    .and(Requirements::TURNING_AFTER)
+    .and(Requirements::REGULAR)
+    .and(Requirements::LEGS);
 
 /// Sine of the angle between tangents where pieces meet that were meant to be smooth.
 const SMOOTH: f64 = 1e-12;
@@ -36,8 +36,8 @@ impl Checker<'_> {
     /// are decided as [`CurveChecker`](crate::CurveChecker) decides them. Corners at the points are not
     /// seen here.
     #[must_use]
-    pub fn unproved(&self, segment: usize, parts: &[BezierPart]) -> Vec<(Criterion, Sign)> {
-        let required = self.calls()[segment];
+    pub fn unproved_pieces(&self, segment: usize, parts: &[BezierPart]) -> Vec<(Criterion, Sign)> {
+        let required = self.requirements()[segment];
         if required.is_empty() || self.is_proved(segment, parts) {
             return Vec::new();
         }
@@ -46,12 +46,12 @@ impl Checker<'_> {
 
     /// The same, whatever is clear from the legs.
     fn left_by_subdivision(&self, segment: usize, parts: &[BezierPart]) -> Vec<(Criterion, Sign)> {
-        let required = self.calls()[segment];
+        let required = self.requirements()[segment];
         let pieces = Segment::new(parts, false, length(self.polygon().points()[segment]));
         let pieces = pieces.beside(required);
         let sign = |criterion| {
             let question = self.question(segment, criterion)?;
-            let sign = decide(&pieces, &question);
+            let sign = prove_sign(&pieces, &question);
             (sign != Sign::Positive).then_some((criterion, sign))
         };
         required.criteria().iter().filter_map(sign).collect()
@@ -61,40 +61,46 @@ impl Checker<'_> {
     /// segment of a smooth curve is, in a fraction of the time that subdivision takes. `ω` is to keep its
     /// sides on every piece (Lemma 5.1), or to change all of them on one, and the torsion its sign.
     pub(crate) fn is_proved(&self, segment: usize, parts: &[BezierPart]) -> bool {
-        let calls = self.calls()[segment];
-        let bends = calls.any(Calls::CONVEXITY.and(Calls::INFLECTION));
-        let sided = calls.any(Calls::TURNING_PAIR) && !bends;
+        let required = self.requirements()[segment];
+        let bends = required.any(Requirements::CONVEXITY.and(Requirements::INFLECTION));
+        let sided = required.any(Requirements::TURNING_PAIR) && !bends;
         // Near a plane, on the side that convexity says.
-        let lost = calls.any(Calls::COPLANARITY) && !calls.any(Calls::CONVEXITY);
-        if !calls.without(BY_PIECES).is_empty() || sided || lost {
+        let lost =
+            required.any(Requirements::COPLANARITY) && !required.any(Requirements::CONVEXITY);
+        if !required.without(BY_PIECES).is_empty() || sided || lost {
             return false;
         }
         let Some(pieces) = self.cubics(segment, parts) else { return false };
         let p = self.polygon().binormal(segment);
         // The side at the start of each piece, and the piece on which it changes.
         let before = pieces.iter().filter(|s| s.omega[0].dot(p) > 0.0).count();
-        let change = if calls.any(Calls::INFLECTION) { before.wrapping_sub(1) } else { usize::MAX };
+        let change = if required.any(Requirements::INFLECTION) {
+            before.wrapping_sub(1)
+        } else {
+            usize::MAX
+        };
         let last = pieces.len() - 1;
-        let proved = |(k, s): (usize, &Situation)| {
-            let mut own =
-                calls.without(Calls::TURNING_PAIR).without(Calls::REGULAR.and(Calls::LEGS));
+        let proved = |(k, s): (usize, &SegmentGeometry)| {
+            let mut own = required
+                .without(Requirements::TURNING_PAIR)
+                .without(Requirements::REGULAR.and(Requirements::LEGS));
             if k != 0 {
-                own = own.without(Calls::TURNING_AT_START.and(Calls::TURNING_BEFORE));
+                own = own.without(Requirements::TURNING_AT_START.and(Requirements::TURNING_BEFORE));
             }
             if k != last {
-                own = own.without(Calls::TURNING_AT_END.and(Calls::TURNING_AFTER));
+                own = own.without(Requirements::TURNING_AT_END.and(Requirements::TURNING_AFTER));
             }
             let mut s = *s;
-            if calls.any(Calls::INFLECTION) && k != change {
+            if required.any(Requirements::INFLECTION) && k != change {
                 // All of it on one side of the change.
-                own = own.without(Calls::INFLECTION).and(Calls::CONVEXITY);
+                own = own.without(Requirements::INFLECTION).and(Requirements::CONVEXITY);
                 (s.p, s.q) = if k < change { (s.p, -s.q) } else { (-s.p, s.q) };
             }
             self.is_clear(segment, &s, own)
         };
-        let regular = |s: &Situation| leads_along([s.a, s.c], s.chord);
+        let regular = |s: &SegmentGeometry| leads_along([s.a, s.c], s.chord);
         pieces.iter().enumerate().all(proved)
-            && (!calls.any(Calls::REGULAR) || pieces.iter().all(regular))
+            && (!required.any(Requirements::REGULAR) || pieces.iter().all(regular))
             && pieces.windows(2).all(|pair| {
                 let (u, v) = (pair[0].c.normalize_or_zero(), pair[1].a.normalize_or_zero());
                 u.cross(v).length() <= SMOOTH && u.dot(v) > 0.0
@@ -103,15 +109,16 @@ impl Checker<'_> {
     }
 
     /// Whether what is asked of a piece is met beyond doubt.
-    fn is_clear(&self, segment: usize, s: &Situation, calls: Calls) -> bool {
+    fn is_clear(&self, segment: usize, s: &SegmentGeometry, required: Requirements) -> bool {
         let turns = [s.before, s.p, s.q, s.after].map(sum);
         let bounds = Coarse::new(sum(s.a) + sum(s.chord) + sum(s.c), s.slack, turns);
-        let clear = !calls.any(Calls::COPLANARITY) && doubtful(s, bounds, calls.bits()) == 0;
-        clear || faults(s, calls, Lean::Against, || self.cones(segment)).is_empty()
+        let clear =
+            !required.any(Requirements::COPLANARITY) && unproved(s, bounds, required.bits()) == 0;
+        clear || violations(s, required, Lean::Against, || self.cones(segment)).is_empty()
     }
 
     /// The cubic pieces as the conditions see them; none where they are not cubics.
-    fn cubics(&self, segment: usize, parts: &[BezierPart]) -> Option<Vec<Situation>> {
+    fn cubics(&self, segment: usize, parts: &[BezierPart]) -> Option<Vec<SegmentGeometry>> {
         let polygon = self.polygon();
         let ([p, q], [before, after]) =
             (polygon.binormals(segment), polygon.binormals_beside(segment));
@@ -123,7 +130,7 @@ impl Checker<'_> {
             }
             let [a, b, c, d] = [a, b, c, d].map(|p| p.truncate());
             let far = (origin + a).abs().max((origin + d).abs()).max_element();
-            Some(Situation::new([b - a, d - c], d - a, [before, p, q, after], far))
+            Some(SegmentGeometry::new([b - a, d - c], d - a, [before, p, q, after], far))
         };
         let pieces: Option<Vec<_>> = parts.iter().map(one).collect();
         pieces.filter(|pieces| !pieces.is_empty())
@@ -131,7 +138,7 @@ impl Checker<'_> {
 
     /// Whether the end tangents, where turning is asked, lie on their own sides of the segment's chord.
     fn leans_to_its_chord(&self, segment: usize, parts: &[BezierPart]) -> bool {
-        let (polygon, calls) = (self.polygon(), self.calls()[segment]);
+        let (polygon, required) = (self.polygon(), self.requirements()[segment]);
         let direction = polygon.direction(segment);
         let leans = |end: usize, part: &BezierPart| {
             let Some((leg, error)) = self.end_leg(segment, part, end) else { return false };
@@ -141,11 +148,10 @@ impl Checker<'_> {
             let error = (2.0 * error + 8.0 * UNIT * sum(leg)) * 1.75 * sum(normal);
             product.dot(normal) > error
         };
-        let asked = [Calls::TURNING_AT_START, Calls::TURNING_AT_END];
-        [parts.first(), parts.last()]
-            .into_iter()
-            .enumerate()
-            .all(|(end, part)| !calls.any(asked[end]) || part.is_some_and(|part| leans(end, part)))
+        let asked = [Requirements::TURNING_AT_START, Requirements::TURNING_AT_END];
+        [parts.first(), parts.last()].into_iter().enumerate().all(|(end, part)| {
+            !required.any(asked[end]) || part.is_some_and(|part| leans(end, part))
+        })
     }
 
     /// The first (0) or the last (1) leg of a part of a segment, and what its coordinates may be off by.
@@ -165,14 +171,14 @@ impl Checker<'_> {
 
     /// What a segment of any degree is asked of a criterion.
     pub(crate) fn question(&self, segment: usize, criterion: Criterion) -> Option<Question> {
-        let calls = self.calls()[segment];
+        let required = self.requirements()[segment];
         let polygon = self.polygon();
         let normals = [segment, segment + 1].map(|i| polygon.binormal(i).normalize_or_zero());
         let beside = polygon.binormals_beside(segment).map(DVec3::normalize_or_zero);
         let cones = self.cones(segment);
         let chord = polygon.direction(segment);
-        let question = Question { criterion, calls, normals, beside, chord, cones };
-        calls.any(Calls::of(criterion)).then_some(question)
+        let question = Question { criterion, required, normals, beside, chord, cones };
+        required.any(Requirements::of(criterion)).then_some(question)
     }
 }
 
@@ -219,7 +225,7 @@ mod tests {
         let points = (0..400).map(at).collect();
         let boundary = Boundary::ZeroCurvature;
         let polygon = DataPolygon::new(points, &Parametrization::Chordal, boundary).unwrap();
-        for (criteria, least) in [(Criteria::ALL, 0.4), (Criteria::EVERY, 0.1)] {
+        for (criteria, least) in [(Criteria::DEFAULT, 0.4), (Criteria::ALL, 0.1)] {
             let checker = Checker::new(&polygon, criteria, Tolerances::default());
             let (mut proved, mut held, mut failed) = (0usize, 0usize, 0usize);
             for (scale, size) in [(0.3, 0.0), (0.6, 1e-3), (1.0, 0.0), (1.0, 1e-2), (2.0, 0.1)] {

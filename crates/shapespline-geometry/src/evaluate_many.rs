@@ -59,7 +59,7 @@ pub(crate) trait Evaluate: Sync {
 
 /// Refuses room that is not for a row a parameter.
 pub(crate) fn check_rows(image: &PiecewiseCubic, u: &[f64], out: &[f64]) -> Result<(), InputError> {
-    let (expected, found) = (u.len() * image.dimension().len(), out.len());
+    let (expected, found) = (u.len() * image.dimension().count(), out.len());
     if found == expected {
         return Ok(());
     }

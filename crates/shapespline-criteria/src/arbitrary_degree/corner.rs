@@ -11,7 +11,7 @@ use shapespline_geometry::{DVec3, length, normalize};
 
 use super::CurveChecker;
 use crate::{
-    Calls, Criterion, Faults, Record,
+    Criterion, Record, Requirements, Violations,
     rounding::{Lean, UNIT, sum},
 };
 
@@ -20,10 +20,10 @@ const BLOCK: usize = 4096;
 
 impl CurveChecker<'_> {
     /// What is not proved of turning at corners, ascending by segment: of those that are one cubic.
-    pub(super) fn corner_faults(&self) -> Vec<(usize, Faults)> {
-        let n = self.checker().calls().len();
-        let of = |i: usize| (i, self.corner_faults_of(i, Lean::Against));
-        let fails = |fault: &(usize, Faults)| !fault.1.is_empty();
+    pub(super) fn corner_violations(&self) -> Vec<(usize, Violations)> {
+        let n = self.checker().requirements().len();
+        let of = |i: usize| (i, self.corner_violations_of(i, Lean::Against));
+        let fails = |violation: &(usize, Violations)| !violation.1.is_empty();
         let is_cubic = |&i: &usize| self.cubic(i).is_some();
         if n < 2 * BLOCK {
             (0..n).filter(is_cubic).map(of).filter(fails).collect()
@@ -34,13 +34,13 @@ impl CurveChecker<'_> {
     }
 
     /// The same of one segment: what is not proved, or what certainly fails.
-    pub(super) fn corner_faults_of(&self, i: usize, lean: Lean) -> Faults {
-        let at = |end: usize, fault: Faults| {
+    pub(super) fn corner_violations_of(&self, i: usize, lean: Lean) -> Violations {
+        let at = |end: usize, violation: Violations| {
             let beyond = self.beyond_chord(i, end, self.end_tangent(i, end));
             let fails = beyond.is_some_and(|beyond| beyond.is_certain || lean == Lean::Against);
-            if fails { fault } else { Faults::default() }
+            if fails { violation } else { Violations::default() }
         };
-        at(0, Faults::TURNING_AT_START).and(at(1, Faults::TURNING_AT_END))
+        at(0, Violations::TURNING_AT_START).and(at(1, Violations::TURNING_AT_END))
     }
 
     /// A record with what the corners at the ends of its segment add to it.
@@ -70,8 +70,8 @@ impl CurveChecker<'_> {
         (own, error): (DVec3, f64),
     ) -> Option<Beyond> {
         let polygon = self.checker().polygon();
-        let asked = [Calls::TURNING_AT_START, Calls::TURNING_AT_END][end];
-        if !self.checker().calls()[segment].any(asked) {
+        let asked = [Requirements::TURNING_AT_START, Requirements::TURNING_AT_END][end];
+        if !self.checker().requirements()[segment].any(asked) {
             return None;
         }
         let n = polygon.segments();

@@ -23,7 +23,7 @@ use shapespline_geometry::polynomial::{Polynomial, Sign};
 
 use super::{
     Segment,
-    decide::{clear, corners},
+    prove_sign::{clear, corners},
 };
 
 /// Subdivision ends at intervals of this part of a piece.
@@ -35,7 +35,7 @@ const DEPTH: u32 = 44;
 const INTERVALS: usize = 1 << 12;
 
 /// Whether every mixture changes sign exactly once on the segments' way.
-pub(crate) fn swings_once(segment: &Segment, normals: [DVec3; 2]) -> Sign {
+pub(crate) fn has_single_sign_change(segment: &Segment, normals: [DVec3; 2]) -> Sign {
     let mut walk = Walk { past: Past::default(), known: Sign::Positive, left: INTERVALS };
     let [p, q] = normals;
     let bends: Vec<(f64, DVec3, f64)> = corners(segment).collect();
@@ -44,7 +44,7 @@ pub(crate) fn swings_once(segment: &Segment, normals: [DVec3; 2]) -> Sign {
         let omega = piece.omega();
         let (x, y) = (omega.map(1.0, |w| w.dot(p)), omega.map(1.0, |w| -w.dot(q)));
         let [from, to] = piece.local;
-        // The ends first: they are exact values, and most faults show there.
+        // The ends first: they are exact values, and most violations show there.
         let clear = |x: &Polynomial<f64>, end: usize, sign: f64| {
             clear(sign * x.ends()[end], x.error(), [from, to][end])
         };

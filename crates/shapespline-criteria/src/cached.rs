@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! The checker of one window of a curve after another, for searches that come back to the same places.
+//! The checker that caches windows of the polygon, for searches that check the same segments again.
 
 use std::{cell::Cell, ops::Range};
 
 use rayon::prelude::*;
-use shapespline_geometry::{DVec3, DataPolygon, Lanes, Stretch};
+use shapespline_geometry::{DVec3, DataPolygon, SegmentBatch, VectorLanes};
 
-use crate::{Calls, Criterion, Faults, StretchCalls, StretchChecker, rounding::Lean};
+use crate::{BatchChecker, BatchRequirements, Criterion, Requirements, Violations, rounding::Lean};
 
 /// Windows that are kept: a change of tension is felt over some 60 segments, in two windows or three.
 const KEPT: usize = 4;
@@ -15,17 +15,17 @@ const KEPT: usize = 4;
 /// Segments are checked in parallel in blocks of this many.
 pub(crate) const BLOCK: usize = 4096;
 
-/// The shape criteria of a polygon, asked of many segments at once by one who comes back to the same
-/// ones: what was read of the polygon last is kept. Verdicts are to the bit those of
-/// [`Checker::faults`](crate::Checker::faults).
+/// The shape criteria of a polygon, for callers that check the same segments again and again: the parts
+/// of the polygon that were read last are cached. Verdicts are to the bit those of
+/// [`Checker::unproved`](crate::Checker::unproved).
 #[derive(Debug, Clone)]
-pub struct WindowChecker<'a> {
-    local: StretchChecker<'a>,
-    /// What each segment calls for, if somebody knows.
-    calls: Option<&'a [Calls]>,
+pub struct CachedChecker<'a> {
+    local: BatchChecker<'a>,
+    /// What each segment requires, if the caller knows already.
+    required: Option<&'a [Requirements]>,
     kept: [Option<Box<Window>>; KEPT],
     /// Scratch.
-    found: Vec<(usize, Faults)>,
+    found: Vec<(usize, Violations)>,
 }
 
 thread_local! {
@@ -33,7 +33,7 @@ thread_local! {
     static SPARE: Cell<Vec<Box<Window>>> = const { Cell::new(Vec::new()) };
 }
 
-impl Drop for WindowChecker<'_> {
+impl Drop for CachedChecker<'_> {
     fn drop(&mut self) {
         let kept = self.kept.iter_mut().filter_map(Option::take);
         // A thread that ends keeps nothing.
@@ -59,15 +59,15 @@ fn new_window() -> Box<Window> {
     window
 }
 
-impl<'a> WindowChecker<'a> {
-    pub(crate) fn new(local: StretchChecker<'a>, calls: Option<&'a [Calls]>) -> Self {
-        Self { local, calls, kept: Default::default(), found: Vec::new() }
+impl<'a> CachedChecker<'a> {
+    pub(crate) fn new(local: BatchChecker<'a>, required: Option<&'a [Requirements]>) -> Self {
+        Self { local, required, kept: Default::default(), found: Vec::new() }
     }
 
     /// The same criteria, nothing kept yet: for another thread.
     #[must_use]
     pub fn another(&self) -> Self {
-        Self::new(self.local, self.calls)
+        Self::new(self.local, self.required)
     }
 
     /// The polygon.
@@ -78,31 +78,32 @@ impl<'a> WindowChecker<'a> {
 
     /// The segments that are not proved to keep the shape, ascending. Cost O(N), on all threads for long
     /// curves.
-    pub fn all_faults<L>(&mut self, legs: L) -> Vec<(usize, Faults)>
+    pub fn all_unproved<L>(&mut self, legs: L) -> Vec<(usize, Violations)>
     where
         L: Fn(usize) -> [DVec3; 2] + Sync,
     {
-        let faults = |windows: &mut Self, segments: Range<usize>, found: &mut Vec<_>| {
-            windows.faults(segments, &legs, found);
+        let unproved = |windows: &mut Self, segments: Range<usize>, found: &mut Vec<_>| {
+            windows.unproved(segments, &legs, found);
         };
-        self.in_blocks(faults, |all, found| all.extend(found))
+        self.in_blocks(unproved, |all, found| all.extend(found))
     }
 
     /// The same, and how many segments each criterion applies to: all that a report on a curve without
-    /// faults says. Cost O(N), on all threads for long curves.
-    pub fn look<L>(&mut self, legs: L) -> (Vec<(usize, Faults)>, [usize; Criterion::COUNT])
+    /// violations says. Cost O(N), on all threads for long curves.
+    pub fn scan<L>(&mut self, legs: L) -> (Vec<(usize, Violations)>, [usize; Criterion::COUNT])
     where
         L: Fn(usize) -> [DVec3; 2] + Sync,
     {
-        type Seen = (Vec<(usize, Faults)>, [usize; Criterion::COUNT]);
-        let look = |windows: &mut Self, segments: Range<usize>, (found, applicable): &mut Seen| {
-            for part in parts(segments) {
-                let window = windows.window(part.start / Stretch::OWN);
-                add(applicable, StretchChecker::applicable(&window.stretch, &window.calls));
-                windows.faults_of_part(part, &legs, found);
-            }
-        };
-        self.in_blocks(look, |(all, sums), (found, applicable)| {
+        type Scanned = (Vec<(usize, Violations)>, [usize; Criterion::COUNT]);
+        let scan =
+            |windows: &mut Self, segments: Range<usize>, (found, applicable): &mut Scanned| {
+                for part in parts(segments) {
+                    let window = windows.window(part.start / SegmentBatch::OWN);
+                    add(applicable, BatchChecker::applicable(&window.batch, &window.required));
+                    windows.unproved_in_part(part, &legs, found);
+                }
+            };
+        self.in_blocks(scan, |(all, sums), (found, applicable)| {
             all.extend(found);
             add(sums, applicable);
         })
@@ -134,19 +135,19 @@ impl<'a> WindowChecker<'a> {
 
     /// Adds those of some segments that are not proved to keep the shape with the end legs that `legs` says,
     /// ascending.
-    pub fn faults(
+    pub fn unproved(
         &mut self,
         segments: Range<usize>,
         legs: impl Fn(usize) -> [DVec3; 2],
-        found: &mut Vec<(usize, Faults)>,
+        found: &mut Vec<(usize, Violations)>,
     ) {
         for part in parts(segments) {
-            self.faults_of_part(part, &legs, found);
+            self.unproved_in_part(part, &legs, found);
         }
     }
 
     /// The first of some segments that is not proved to keep the shape; windows after it are not looked at.
-    pub fn any_fault(
+    pub fn first_unproved(
         &mut self,
         segments: Range<usize>,
         legs: impl Fn(usize) -> [DVec3; 2],
@@ -154,51 +155,51 @@ impl<'a> WindowChecker<'a> {
         let mut found = std::mem::take(&mut self.found);
         found.clear();
         let first = parts(segments).find_map(|part| {
-            self.faults_of_part(part, &legs, &mut found);
-            found.first().map(|fault| fault.0)
+            self.unproved_in_part(part, &legs, &mut found);
+            found.first().map(|violation| violation.0)
         });
         self.found = found;
         first
     }
 
     /// What is not proved of one segment with some end legs.
-    pub fn faults_at(&mut self, segment: usize, legs: [DVec3; 2]) -> Faults {
+    pub fn unproved_at(&mut self, segment: usize, legs: [DVec3; 2]) -> Violations {
         self.judge(segment, legs, Lean::Against)
     }
 
     /// What fails on one segment with some end legs as computed: of what is not proved, that which is not
     /// merely lost in rounding.
-    pub fn failures_at(&mut self, segment: usize, legs: [DVec3; 2]) -> Faults {
+    pub fn failures_at(&mut self, segment: usize, legs: [DVec3; 2]) -> Violations {
         self.judge(segment, legs, Lean::Even)
     }
 
     /// What fails on one segment with some end legs, however control points and arithmetic round.
-    pub fn violations_at(&mut self, segment: usize, legs: [DVec3; 2]) -> Faults {
+    pub fn violations_at(&mut self, segment: usize, legs: [DVec3; 2]) -> Violations {
         self.judge(segment, legs, Lean::For)
     }
 
-    fn judge(&mut self, segment: usize, legs: [DVec3; 2], lean: Lean) -> Faults {
+    fn judge(&mut self, segment: usize, legs: [DVec3; 2], lean: Lean) -> Violations {
         let local = self.local;
-        let window = self.window(segment / Stretch::OWN);
-        let j = segment % Stretch::OWN + Stretch::BESIDE;
-        local.faults_at(&window.stretch, window.calls[j], legs, j, lean)
+        let window = self.window(segment / SegmentBatch::OWN);
+        let j = segment % SegmentBatch::OWN + SegmentBatch::BESIDE;
+        local.violations_at(&window.batch, window.required[j], legs, j, lean)
     }
 
-    fn faults_of_part(
+    fn unproved_in_part(
         &mut self,
         part: Range<usize>,
         legs: &impl Fn(usize) -> [DVec3; 2],
-        found: &mut Vec<(usize, Faults)>,
+        found: &mut Vec<(usize, Violations)>,
     ) {
         let local = self.local;
-        self.window(part.start / Stretch::OWN).faults(&local, part, legs, found);
+        self.window(part.start / SegmentBatch::OWN).unproved(&local, part, legs, found);
     }
 
     /// The window of a number.
     fn window(&mut self, number: usize) -> &mut Window {
         let window = self.kept[number % KEPT].get_or_insert_with(new_window);
         if window.number != number {
-            window.load(&self.local, self.calls, number);
+            window.load(&self.local, self.required, number);
         }
         window
     }
@@ -209,15 +210,15 @@ fn add(sums: &mut [usize; Criterion::COUNT], counts: [usize; Criterion::COUNT]) 
     sums.iter_mut().zip(counts).for_each(|(sum, count)| *sum += count);
 }
 
-/// As many segments of a polygon as a stretch has, from a multiple of that number on, with what they
-/// call for and the end legs of a curve.
+/// As many segments of a polygon as a batch has, from a multiple of that number on, with what they
+/// require and the end legs of a curve.
 #[derive(Debug, Clone)]
 struct Window {
     number: usize,
-    stretch: Stretch,
-    calls: StretchCalls,
-    first: Lanes,
-    last: Lanes,
+    batch: SegmentBatch,
+    required: BatchRequirements,
+    first: VectorLanes,
+    last: VectorLanes,
 }
 
 impl Default for Window {
@@ -225,54 +226,54 @@ impl Default for Window {
     fn default() -> Self {
         Self {
             number: usize::MAX,
-            stretch: Stretch::default(),
-            calls: [Calls::default(); Stretch::ROOM],
-            first: Lanes::default(),
-            last: Lanes::default(),
+            batch: SegmentBatch::default(),
+            required: [Requirements::default(); SegmentBatch::ROOM],
+            first: VectorLanes::default(),
+            last: VectorLanes::default(),
         }
     }
 }
 
 impl Window {
     /// Reads the window of a number.
-    fn load(&mut self, local: &StretchChecker<'_>, calls: Option<&[Calls]>, number: usize) {
-        let start = number * Stretch::OWN;
-        let own = start..local.polygon().segments().min(start + Stretch::OWN);
+    fn load(&mut self, local: &BatchChecker<'_>, required: Option<&[Requirements]>, number: usize) {
+        let start = number * SegmentBatch::OWN;
+        let own = start..local.polygon().segments().min(start + SegmentBatch::OWN);
         self.number = number;
-        self.stretch.load(local.polygon(), own.clone());
-        match calls {
-            Some(calls) => self.calls[self.stretch.own()].copy_from_slice(&calls[own]),
-            None => local.calls(&self.stretch, &mut self.calls),
+        self.batch.load(local.polygon(), own.clone());
+        match required {
+            Some(required) => self.required[self.batch.own()].copy_from_slice(&required[own]),
+            None => local.requirements(&self.batch, &mut self.required),
         }
     }
 
     /// Adds those of some segments in the window that are not proved to keep the shape with the end legs that
     /// `legs` says.
-    fn faults(
+    fn unproved(
         &mut self,
-        local: &StretchChecker<'_>,
+        local: &BatchChecker<'_>,
         segments: Range<usize>,
         legs: &impl Fn(usize) -> [DVec3; 2],
-        found: &mut Vec<(usize, Faults)>,
+        found: &mut Vec<(usize, Violations)>,
     ) {
-        let Self { number, stretch, calls, first, last } = self;
-        let place = |segment: usize| segment + Stretch::BESIDE - *number * Stretch::OWN;
+        let Self { number, batch, required, first, last } = self;
+        let place = |segment: usize| segment + SegmentBatch::BESIDE - *number * SegmentBatch::OWN;
         let places = place(segments.start)..place(segments.end);
         for (i, j) in segments.zip(places.clone()) {
             let [a, c] = legs(i);
             first.set(j, a);
             last.set(j, c);
         }
-        local.faults_among(places, stretch, calls, [first, last], found);
+        local.unproved_among(places, batch, required, [first, last], found);
     }
 }
 
 /// The parts of some segments that lie in one window each.
 fn parts(segments: Range<usize>) -> impl Iterator<Item = Range<usize>> {
     let Range { start, end } = segments;
-    let windows = start / Stretch::OWN..end.div_ceil(Stretch::OWN);
+    let windows = start / SegmentBatch::OWN..end.div_ceil(SegmentBatch::OWN);
     windows.map(move |k| {
-        let own = k * Stretch::OWN..(k + 1) * Stretch::OWN;
+        let own = k * SegmentBatch::OWN..(k + 1) * SegmentBatch::OWN;
         own.start.max(start)..own.end.min(end)
     })
 }
@@ -298,37 +299,37 @@ mod tests {
         let points = (0..=n).map(at).collect();
         let boundary = Boundary::ZeroCurvature;
         let polygon = DataPolygon::new(points, &Parametrization::Chordal, boundary).unwrap();
-        let (criteria, tolerances) = (Criteria::EVERY, Tolerances::default());
+        let (criteria, tolerances) = (Criteria::ALL, Tolerances::default());
         let checker = Checker::new(&polygon, criteria, tolerances);
-        let mut windows = checker.in_windows();
+        let mut windows = checker.cached();
         for scale in [0.1, 0.4, 1.0] {
             let slope = |node: usize| {
                 let [before, after] = polygon.directions_at(node);
                 (before + after + DVec3::Z * 0.3) * (0.4 * scale)
             };
             let legs = |i: usize| [slope(i), slope(i + 1)];
-            let alone = |segments: Range<usize>| -> Vec<(usize, Faults)> {
-                let faults = segments.map(|i| (i, checker.faults(i, legs(i))));
-                faults.filter(|fault| !fault.1.is_empty()).collect()
+            let alone = |segments: Range<usize>| -> Vec<(usize, Violations)> {
+                let violations = segments.map(|i| (i, checker.unproved(i, legs(i))));
+                violations.filter(|violation| !violation.1.is_empty()).collect()
             };
             let all = alone(0..n);
             assert!(all.len() > n / 50 && all.len() < n);
-            assert_eq!(windows.all_faults(legs), all);
-            assert_eq!(checker.all_faults(legs), all);
-            let local = StretchChecker::new(&polygon, criteria, tolerances);
-            let (found, applicable) = local.in_windows().look(legs);
+            assert_eq!(windows.all_unproved(legs), all);
+            assert_eq!(checker.all_unproved(legs), all);
+            let local = BatchChecker::new(&polygon, criteria, tolerances);
+            let (found, applicable) = local.cached().scan(legs);
             assert_eq!((found, applicable), (all, checker.applicable(0..n)));
             for (start, length) in
                 [(0, 1), (63, 1), (60, 10), (700, 200), (3, 61), (n - 1, 1), (5, 0)]
             {
                 let segments = start..start + length;
                 let (expected, mut found) = (alone(segments.clone()), Vec::new());
-                windows.faults(segments.clone(), legs, &mut found);
+                windows.unproved(segments.clone(), legs, &mut found);
                 assert_eq!(found, expected);
-                let any = windows.any_fault(segments.clone(), legs);
-                assert_eq!(any, expected.first().map(|fault| fault.0));
+                let any = windows.first_unproved(segments.clone(), legs);
+                assert_eq!(any, expected.first().map(|violation| violation.0));
                 for i in segments.clone() {
-                    assert_eq!(windows.faults_at(i, legs(i)), checker.faults(i, legs(i)));
+                    assert_eq!(windows.unproved_at(i, legs(i)), checker.unproved(i, legs(i)));
                 }
             }
         }

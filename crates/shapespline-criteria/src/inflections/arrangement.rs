@@ -19,8 +19,8 @@ use shapespline_geometry::bernstein::multiply_quadratics;
 
 use super::{
     roots::roots,
-    sequence::{Arc, Item, Line, STRAIGHT, Sequence, View},
-    walk::{Event, Most, Place, Sweep},
+    sign_sequence::{Arc, Item, Line, STRAIGHT, Sequence, View},
+    traversal::{Event, Maximum, Place, Sweep},
 };
 
 /// The most inflections that any direction shows; nothing if `go_on`, which is asked before each walk,
@@ -28,7 +28,7 @@ use super::{
 pub(super) fn most(
     sequence: &Sequence,
     go_on: &(dyn Fn() -> ControlFlow<()> + Sync),
-) -> Option<Most> {
+) -> Option<Maximum> {
     let lines = sequence.lines.len();
     let walk = |scratch: &mut Walk, i: usize| {
         if go_on().is_break() {
@@ -37,7 +37,7 @@ pub(super) fn most(
         let mut most = if i >= lines {
             scratch.along_arc(sequence, i - lines)
         } else if sequence.lines[i].silent {
-            Most::NONE
+            Maximum::NONE
         } else {
             scratch.along_line(sequence, i)
         };
@@ -48,7 +48,7 @@ pub(super) fn most(
         .into_par_iter()
         .with_min_len(8)
         .map_init(Walk::default, walk)
-        .try_reduce(|| Most::NONE, |a, b| Some(a.or(b)))
+        .try_reduce(|| Maximum::NONE, |a, b| Some(a.or(b)))
 }
 
 /// The buffers of a walk.
@@ -74,7 +74,7 @@ fn place(c: f64, s: f64) -> f64 {
 
 impl Walk {
     /// Along the great circle of a line, on both sides of it.
-    fn along_line(&mut self, sequence: &Sequence, i: usize) -> Most {
+    fn along_line(&mut self, sequence: &Sequence, i: usize) -> Maximum {
         let Line { v, error, joints, .. } = sequence.lines[i];
         let e1 = v.any_orthonormal_vector();
         let e2 = v.cross(e1);
@@ -88,7 +88,7 @@ impl Walk {
             let w = e1 * c + e2 * s;
             events.push(Event { at: place(c, s), width: width / size.abs(), begins: 0.0, item, w });
         };
-        let mut best = Most::NONE;
+        let mut best = Maximum::NONE;
         self.parallel.clear();
         for (j, line) in sequence.lines.iter().enumerate() {
             let (x, y) = (line.v.dot(e1), line.v.dot(e2));
@@ -123,7 +123,7 @@ impl Walk {
         let begin = self.begin_in_the_widest_gap(v, e1);
         for side in [true, false] {
             let (view, parallel) = (&mut self.view, &self.parallel);
-            view.look(sequence, begin, |j| match parallel[j] {
+            view.turn_to(sequence, begin, |j| match parallel[j] {
                 Some(same) => same == side,
                 None => sequence.lines[j].v.dot(begin) > 0.0,
             });
@@ -157,7 +157,7 @@ impl Walk {
     }
 
     /// Along the tangents of an arc, on the side where its two inflections are seen.
-    fn along_arc(&mut self, sequence: &Sequence, k: usize) -> Most {
+    fn along_arc(&mut self, sequence: &Sequence, k: usize) -> Maximum {
         let arc = &sequence.arcs[k];
         let own = [arc.from, arc.from + 1];
         let joints = [arc.joint, arc.joint + 1];
@@ -200,11 +200,11 @@ impl Walk {
             Place { w: arc.tangent_at(t), inwards }
         };
         let start = place(events.first().map_or(0.5, |e| 0.5 * e.begins));
-        self.view.look(sequence, start.w, |j| {
+        self.view.turn_to(sequence, start.w, |j| {
             if own.contains(&j) { positive } else { sequence.lines[j].v.dot(start.w) > 0.0 }
         });
         self.view.set_link(arc.from, 2);
-        let mut best = Most::NONE;
+        let mut best = Maximum::NONE;
         best.upper = self.view.count + 2 * beyond;
         let between = |a: &Event, b: &Event| place(0.5 * (a.at + b.at));
         sweep.run(&mut self.view, &self.events, start, between, &mut best);

@@ -5,8 +5,8 @@
 use glam::DVec3;
 use shapespline_geometry::polynomial::{Polynomial, Sign};
 
-use super::{Question, Segment, decide::clear};
-use crate::{Calls, margin::Margin};
+use super::{Question, Segment, prove_sign::clear};
+use crate::{Requirements, margin::Margin};
 
 /// What is asked at a node: vectors along which `ω`, and one along which the tangent, has to lead.
 struct Asked {
@@ -16,22 +16,22 @@ struct Asked {
 
 /// What is asked at the start (0) or at the end (1) of a segment, by unit vectors.
 fn asked(question: &Question, end: usize) -> Asked {
-    let Question { calls, normals, beside, chord, .. } = question;
+    let Question { required, normals, beside, chord, .. } = question;
     let (own, other) = (normals[end], normals[1 - end]);
     let (at_node, alike, apart) = if end == 0 {
-        (Calls::TURNING_AT_START, Calls::BEFORE_ALIKE, Calls::BEFORE_APART)
+        (Requirements::TURNING_AT_START, Requirements::BEFORE_ALIKE, Requirements::BEFORE_APART)
     } else {
-        (Calls::TURNING_AT_END, Calls::AFTER_ALIKE, Calls::AFTER_APART)
+        (Requirements::TURNING_AT_END, Requirements::AFTER_ALIKE, Requirements::AFTER_APART)
     };
-    if !calls.any(at_node) {
+    if !required.any(at_node) {
         return Asked { bends: Vec::new(), tangent: None };
     }
     let mut bends = vec![own];
     for (n, alike, apart) in
-        [(other, Calls::TURNS_ALIKE, Calls::TURNS_APART), (beside[end], alike, apart)]
+        [(other, Requirements::TURNS_ALIKE, Requirements::TURNS_APART), (beside[end], alike, apart)]
     {
-        bends.extend(calls.any(alike).then_some(n));
-        bends.extend(calls.any(apart).then_some(-n));
+        bends.extend(required.any(alike).then_some(n));
+        bends.extend(required.any(apart).then_some(-n));
     }
     // (T × l)·P = T·(l × P) at the start, (l × T)·P = T·(P × l) at the end.
     let tangent = if end == 0 { chord.cross(own) } else { own.cross(*chord) };

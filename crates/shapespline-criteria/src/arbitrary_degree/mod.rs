@@ -14,14 +14,14 @@
 mod checker;
 mod corner;
 mod cubics;
-mod decide;
-mod measure;
+mod margin;
 mod pieces;
+mod prove_sign;
 mod segment;
-mod swing;
+mod single_sign_change;
 mod turning;
 
 pub use checker::{CurveChecker, CurveError, INTERPOLATION, check_curve};
-pub(crate) use decide::{Question, corners, decide, is_never_outside};
-pub(crate) use measure::{measure, minimum};
+pub(crate) use margin::{margin, minimum};
+pub(crate) use prove_sign::{Question, corners, is_never_outside, prove_sign};
 pub(crate) use segment::{Piece, Segment};

@@ -6,7 +6,7 @@
 use glam::DVec3;
 use shapespline_geometry::polynomial::Polynomial;
 
-use crate::general::{Segment, corners};
+use crate::arbitrary_degree::{Segment, corners};
 
 /// Sine of the angle below which directions count as the same, and three points as collinear.
 pub(super) const STRAIGHT: f64 = 1e-9;
@@ -254,7 +254,7 @@ pub(super) struct View {
 
 impl View {
     /// Looks along `w`; the signs of lines come from `sign`.
-    pub(super) fn look(&mut self, sequence: &Sequence, w: DVec3, sign: impl Fn(usize) -> bool) {
+    pub(super) fn turn_to(&mut self, sequence: &Sequence, w: DVec3, sign: impl Fn(usize) -> bool) {
         self.positive.clear();
         self.positive.extend((0..sequence.lines.len()).map(sign));
         self.links.clear();

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! A stretch of a polygon, coordinate by coordinate, for arithmetic on several segments at once.
+//! Batches of the segments of a polygon, coordinate by coordinate, for arithmetic on several at once.
 //!
-//! A formula in a loop over [`Lanes`] is compiled for as many segments at a time as the machine's
+//! A formula in a loop over [`VectorLanes`] is compiled for as many segments at a time as the machine's
 //! registers hold, if it has no branches; each operation is the one that a lone segment would get, so
 //! the results are the same to the bit. What needs branches is left to a second loop over the few
 //! places where it matters.
@@ -17,22 +17,22 @@ use crate::{
     vector::{is_ordinary, normalize},
 };
 
-/// Vectors coordinate by coordinate, for one stretch.
+/// The vectors of one batch, coordinate by coordinate.
 #[derive(Debug, Clone)]
-pub struct Lanes {
-    x: [f64; Stretch::ROOM],
-    y: [f64; Stretch::ROOM],
-    z: [f64; Stretch::ROOM],
+pub struct VectorLanes {
+    x: [f64; SegmentBatch::ROOM],
+    y: [f64; SegmentBatch::ROOM],
+    z: [f64; SegmentBatch::ROOM],
 }
 
-impl Default for Lanes {
+impl Default for VectorLanes {
     fn default() -> Self {
-        let zero = [0.0; Stretch::ROOM];
+        let zero = [0.0; SegmentBatch::ROOM];
         Self { x: zero, y: zero, z: zero }
     }
 }
 
-impl Lanes {
+impl VectorLanes {
     /// Vector `j`.
     #[inline(always)]
     #[must_use]
@@ -54,57 +54,57 @@ impl Lanes {
     }
 }
 
-/// Consecutive segments of a polygon and three on either side: what local methods look at.
+/// Consecutive segments of a polygon and three on each side: all that local methods read.
 ///
 /// Place `j` stands for segment `start − 3 + j` of the polygon, and for the node at its end. On closed
 /// polygons indices wrap. The places beyond the ends of an open one hold copies of the end segment, but
 /// the direction next to it is the stand-in that [`DataPolygon::directions_around`] has there, and nodes
 /// beyond the ends have no binormal vector.
 #[derive(Debug, Clone)]
-pub struct Stretch {
+pub struct SegmentBatch {
     start: usize,
     places: usize,
     ordinary: bool,
     far: f64,
-    chords: Lanes,
+    chords: VectorLanes,
     spacings: [f64; Self::ROOM],
     lengths: [f64; Self::ROOM],
-    directions: Lanes,
-    binormals: Lanes,
+    directions: VectorLanes,
+    binormals: VectorLanes,
     sines: [f64; Self::ROOM],
 }
 
-impl Default for Stretch {
+impl Default for SegmentBatch {
     fn default() -> Self {
         Self {
             start: 0,
             places: 0,
             ordinary: true,
             far: 0.0,
-            chords: Lanes::default(),
+            chords: VectorLanes::default(),
             spacings: [0.0; Self::ROOM],
             lengths: [0.0; Self::ROOM],
-            directions: Lanes::default(),
-            binormals: Lanes::default(),
+            directions: VectorLanes::default(),
+            binormals: VectorLanes::default(),
             sines: [0.0; Self::ROOM],
         }
     }
 }
 
-impl Stretch {
-    /// Segments that a stretch has on either side of its own.
+impl SegmentBatch {
+    /// Segments that a batch has on either side of its own.
     ///
     /// A criterion asks about the binormal vectors at the two nodes of a segment and at those beside them,
     /// which takes two; what the segment before and after its own ask for takes one more.
     pub const BESIDE: usize = 3;
 
-    /// The most segments of its own that a stretch has: all that is worked on stays in the first cache.
+    /// The most segments of its own that a batch has: all that is worked on stays in the first cache.
     pub const OWN: usize = 64;
 
     /// Room for them all.
     pub const ROOM: usize = Self::OWN + 2 * Self::BESIDE;
 
-    /// Fills the stretch from some segments of a polygon, at least one and at most [`Stretch::OWN`].
+    /// Fills the batch from some segments of a polygon, at least one and at most [`SegmentBatch::OWN`].
     pub fn load(&mut self, polygon: &DataPolygon, own: Range<usize>) {
         self.start = own.start;
         self.places = own.len() + 2 * Self::BESIDE;
@@ -211,7 +211,7 @@ impl Stretch {
         (self.start + place + Self::BESIDE * (n - 1)) % n
     }
 
-    /// Whether all chords are of a size at which [`near_one`](crate::near_one) leaves them as they are.
+    /// Whether all chords are of a size at which [`normalized_scale`](crate::normalized_scale) leaves them as they are.
     #[must_use]
     pub fn is_ordinary(&self) -> bool {
         self.ordinary
@@ -227,7 +227,7 @@ impl Stretch {
     /// The chords.
     #[inline(always)]
     #[must_use]
-    pub fn chords(&self) -> &Lanes {
+    pub fn chords(&self) -> &VectorLanes {
         &self.chords
     }
 
@@ -248,14 +248,14 @@ impl Stretch {
     /// The unit chords, stand-ins included.
     #[inline(always)]
     #[must_use]
-    pub fn directions(&self) -> &Lanes {
+    pub fn directions(&self) -> &VectorLanes {
         &self.directions
     }
 
     /// The binormal vectors of the unit chords, at the node at the end of each place but the last.
     #[inline(always)]
     #[must_use]
-    pub fn binormals(&self) -> &Lanes {
+    pub fn binormals(&self) -> &VectorLanes {
         &self.binormals
     }
 
@@ -293,7 +293,7 @@ mod tests {
         for number in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1.2e307, -1.2e307, 1.1e307] {
             for place in 0..9 {
                 for axis in DVec3::AXES {
-                    let mut lanes = Lanes::default();
+                    let mut lanes = VectorLanes::default();
                     lanes.set(
                         place,
                         DVec3::select(axis.cmpgt(DVec3::ZERO), DVec3::splat(number), axis),
@@ -308,7 +308,7 @@ mod tests {
     /// To the bit what the polygon says, at every size, around closed ones and at open ends.
     #[test]
     fn a_stretch_is_what_the_polygon_says() {
-        let mut stretch = Stretch::default();
+        let mut batch = SegmentBatch::default();
         for n in [2, 3, 63, 64, 65, 130] {
             for exponent in [-250, -38, 0, 38, 250] {
                 let size = 10f64.powi(exponent);
@@ -328,27 +328,27 @@ mod tests {
                     let points = points.clone();
                     let polygon =
                         DataPolygon::new(points, &Parametrization::Centripetal, boundary).unwrap();
-                    for start in (0..n).step_by(Stretch::OWN) {
-                        let own = start..n.min(start + Stretch::OWN);
-                        stretch.load(&polygon, own.clone());
-                        assert_eq!(stretch.own().len(), own.len());
-                        for (j, i) in stretch.own().zip(own) {
-                            assert_eq!(stretch.segment(&polygon, j), i);
-                            assert!(stretch.segments(&polygon).contains(&j));
-                            assert_eq!(stretch.chords().get(j), polygon.chord(i));
-                            assert_eq!(stretch.spacings()[j], polygon.spacing(i));
-                            let around = [j - 1, j, j + 1].map(|j| stretch.directions().get(j));
+                    for start in (0..n).step_by(SegmentBatch::OWN) {
+                        let own = start..n.min(start + SegmentBatch::OWN);
+                        batch.load(&polygon, own.clone());
+                        assert_eq!(batch.own().len(), own.len());
+                        for (j, i) in batch.own().zip(own) {
+                            assert_eq!(batch.segment(&polygon, j), i);
+                            assert!(batch.segments(&polygon).contains(&j));
+                            assert_eq!(batch.chords().get(j), polygon.chord(i));
+                            assert_eq!(batch.spacings()[j], polygon.spacing(i));
+                            let around = [j - 1, j, j + 1].map(|j| batch.directions().get(j));
                             assert_eq!(around, polygon.directions_around(i));
-                            let binormals = [j - 1, j].map(|j| stretch.binormals().get(j));
+                            let binormals = [j - 1, j].map(|j| batch.binormals().get(j));
                             assert_eq!(binormals, polygon.binormals(i));
-                            let beside = [j - 2, j + 1].map(|j| stretch.binormals().get(j));
+                            let beside = [j - 2, j + 1].map(|j| batch.binormals().get(j));
                             assert_eq!(beside, polygon.binormals_beside(i));
                         }
-                        for j in stretch.segments(&polygon) {
-                            let i = stretch.segment(&polygon, j);
-                            assert_eq!(stretch.chords().get(j), polygon.chord(i));
-                            assert_eq!(stretch.directions().get(j), polygon.direction(i));
-                            assert_eq!(stretch.spacings()[j], polygon.spacing(i));
+                        for j in batch.segments(&polygon) {
+                            let i = batch.segment(&polygon, j);
+                            assert_eq!(batch.chords().get(j), polygon.chord(i));
+                            assert_eq!(batch.directions().get(j), polygon.direction(i));
+                            assert_eq!(batch.spacings()[j], polygon.spacing(i));
                         }
                     }
                 }

@@ -1,23 +1,23 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! What the polygon calls for: the index sets (5.34)–(5.39) of paper 001, with its zero tests made
+//! What the polygon requires: the index sets (5.34)–(5.39) of paper 001, with its zero tests made
 //! relative.
 
 use std::ops::Range;
 
 use glam::DVec3;
 use rayon::prelude::*;
-use shapespline_geometry::{DataPolygon, Dimension, Stretch, length, normalize};
+use shapespline_geometry::{DataPolygon, Dimension, SegmentBatch, length, normalize};
 
 use crate::{Criteria, Criterion, Tolerances, resolution::leave_known};
 
-/// From two blocks of this many segments on all threads find the calls.
+/// Above two blocks of this many segments all threads find the requirements.
 const BLOCK: usize = 4096;
 
 /// The first segments that are asked whether the polygon is planar: most that are not say so at once.
 const FIRST: usize = 4;
 
-/// The bits of [`Calls`] that say how the binormal vectors of a pair of nodes lie to each other; those of
+/// The bits of [`Requirements`] that say how the binormal vectors of a pair of nodes lie to each other; those of
 /// the pair before and after the segment's own stand two and four places further on.
 const ALIKE: u32 = 1 << 11;
 const APART: u32 = 1 << 12;
@@ -26,9 +26,9 @@ const AFTER: u32 = 4;
 
 /// The conditions that a segment is asked to meet.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Calls(u32);
+pub struct Requirements(u32);
 
-impl Calls {
+impl Requirements {
     /// `P_m·P_{m+1} > 0`.
     pub const CONVEXITY: Self = Self(1);
     /// `P_m·P_{m+1} < 0`.
@@ -92,39 +92,39 @@ impl Calls {
         .and(Self::COPLANARITY)
         .and(Self::SPLIT_COPLANARITY);
 
-    /// Whether any call of `other` is among these.
+    /// Whether any requirement of `other` is among these.
     #[inline]
     #[must_use]
     pub fn any(self, other: Self) -> bool {
         self.0 & other.0 != 0
     }
 
-    /// Whether there is no call at all.
+    /// Whether there is no requirement at all.
     #[inline]
     #[must_use]
     pub fn is_empty(self) -> bool {
         self.0 == 0
     }
 
-    /// The calls together.
+    /// The requirements together.
     #[must_use]
     pub const fn and(self, other: Self) -> Self {
         Self(self.0 | other.0)
     }
 
-    /// The calls that are not among `other`.
+    /// The requirements that are not among `other`.
     #[must_use]
     pub(crate) const fn without(self, other: Self) -> Self {
         Self(self.0 & !other.0)
     }
 
-    /// Those of the calls that belong to a set of criteria.
+    /// Those of the requirements that belong to a set of criteria.
     #[must_use]
     pub fn only(self, criteria: Criteria) -> Self {
         Self(self.0 & Self::of_all(criteria).0)
     }
 
-    /// The calls that belong to a criterion.
+    /// The requirements that belong to a criterion.
     #[must_use]
     pub fn of(criterion: Criterion) -> Self {
         match criterion {
@@ -143,23 +143,23 @@ impl Calls {
         }
     }
 
-    /// The calls that imply a regular curve where they are met. A cubic that stops where its legs are
+    /// The requirements that imply a regular curve where they are met. A cubic that stops where its legs are
     /// independent has none of them; else `ω` has a double root there, so along no vector is it positive
     /// throughout, or does it change its sign once.
     pub(crate) const IMPLY_REGULAR: Self =
         Self::CONVEXITY.and(Self::INFLECTION).and(Self::RIGHT_TORSION).and(Self::LEFT_TORSION);
 
-    /// The criteria that the calls belong to.
+    /// The criteria that the requirements belong to.
     #[must_use]
     pub fn criteria(self) -> Criteria {
         Criterion::ALL.into_iter().filter(|&c| self.any(Self::of(c))).collect()
     }
 
-    /// What each segment of a polygon calls for. Cost O(N).
+    /// What each segment of a polygon requires. Cost O(N).
     #[must_use]
     pub fn of_polygon(polygon: &DataPolygon, tolerances: &Tolerances) -> Vec<Self> {
         let planar = Self::is_planar(polygon, tolerances);
-        Self::among(polygon, tolerances, Self::wanted(Criteria::EVERY, planar))
+        Self::among(polygon, tolerances, Self::wanted(Criteria::ALL, planar))
     }
 
     /// Whether no segment has a torsion: in a planar polygon coplanarity is no question (paper 001,
@@ -170,12 +170,12 @@ impl Calls {
             let [before, own, after] = [i - 1, i, i + 1].map(|k| normalize(polygon.chord(k)));
             before.cross(own).dot(after).abs() > tolerances.zero
         };
-        let flat = |stretch: &mut Stretch, own: Range<usize>| {
-            stretch.load(polygon, own);
-            let (directions, binormals) = (stretch.directions(), stretch.binormals());
+        let flat = |batch: &mut SegmentBatch, own: Range<usize>| {
+            batch.load(polygon, own);
+            let (directions, binormals) = (batch.directions(), batch.binormals());
             let mut turns = 0;
-            // At place j + BESIDE, as in `of_stretch`.
-            for j in 0..stretch.less(2 * Stretch::BESIDE) {
+            // At place j + BESIDE, as in `of_batch`.
+            for j in 0..batch.less(2 * SegmentBatch::BESIDE) {
                 let gamma = binormals.get(j + 2).dot(directions.get(j + 4));
                 turns += u64::from(gamma.abs() > tolerances.zero);
             }
@@ -183,49 +183,49 @@ impl Calls {
         };
         let n = polygon.segments();
         polygon.dimension() == Dimension::Two
-            || (!(1..n.saturating_sub(1).min(FIRST)).any(twists) && all_stretches(n, flat))
+            || (!(1..n.saturating_sub(1).min(FIRST)).any(twists) && all_batches(n, flat))
     }
 
-    /// What each segment of a polygon calls for among the [wanted](Self::wanted) calls.
+    /// What each segment of a polygon requires among the [wanted](Self::wanted) requirements.
     pub(crate) fn among(polygon: &DataPolygon, tolerances: &Tolerances, wanted: Self) -> Vec<Self> {
-        let of = |stretch: &mut Stretch, (k, calls): (usize, &mut [Self])| {
-            let start = k * Stretch::OWN;
-            stretch.load(polygon, start..start + calls.len());
-            let mut all = [Self::default(); Stretch::ROOM];
-            Self::of_stretch(polygon, stretch, wanted, tolerances, &mut all);
-            calls.copy_from_slice(&all[stretch.own()]);
+        let of = |batch: &mut SegmentBatch, (k, required): (usize, &mut [Self])| {
+            let start = k * SegmentBatch::OWN;
+            batch.load(polygon, start..start + required.len());
+            let mut all = [Self::default(); SegmentBatch::ROOM];
+            Self::of_batch(polygon, batch, wanted, tolerances, &mut all);
+            required.copy_from_slice(&all[batch.own()]);
         };
         let n = polygon.segments();
-        let mut calls = vec![Self::default(); n];
+        let mut required = vec![Self::default(); n];
         if n < 2 * BLOCK {
-            let mut stretch = Stretch::default();
-            calls.chunks_mut(Stretch::OWN).enumerate().for_each(|own| of(&mut stretch, own));
+            let mut batch = SegmentBatch::default();
+            required.chunks_mut(SegmentBatch::OWN).enumerate().for_each(|own| of(&mut batch, own));
         } else {
-            calls
-                .par_chunks_mut(Stretch::OWN)
+            required
+                .par_chunks_mut(SegmentBatch::OWN)
                 .enumerate()
-                .with_min_len(BLOCK / Stretch::OWN)
-                .for_each_init(Stretch::default, of);
+                .with_min_len(BLOCK / SegmentBatch::OWN)
+                .for_each_init(SegmentBatch::default, of);
         }
-        calls
+        required
     }
 
-    /// What the segments of a stretch call for, except at its first and its last two places; nothing
+    /// What the segments of a batch require, except at its first and its last two places; nothing
     /// beyond the ends of the polygon.
-    pub(crate) fn of_stretch(
+    pub(crate) fn of_batch(
         polygon: &DataPolygon,
-        stretch: &Stretch,
+        batch: &SegmentBatch,
         wanted: Self,
         tolerances: &Tolerances,
-        calls: &mut [Self; Stretch::ROOM],
+        required: &mut [Self; SegmentBatch::ROOM],
     ) {
-        let (places, zero) = (stretch.places(), tolerances.zero);
-        let (directions, binormals) = (stretch.directions(), stretch.binormals());
-        let sines = stretch.sines();
+        let (places, zero) = (batch.places(), tolerances.zero);
+        let (directions, binormals) = (batch.directions(), batch.binormals());
+        let sines = batch.sines();
         let planes = u64::from(wanted.any(Self::of(Criterion::Coplanarity)));
-        let (mut signs, mut special) = ([0; Stretch::ROOM], [0; Stretch::ROOM]);
+        let (mut signs, mut special) = ([0; SegmentBatch::ROOM], [0; SegmentBatch::ROOM]);
         let mut any = 0;
-        for j in 0..stretch.less(2) {
+        for j in 0..batch.less(2) {
             let [p, q] = [binormals.get(j), binormals.get(j + 1)];
             let (gamma, ends) = (p.dot(directions.get(j + 2)), [sines[j], sines[j + 1]]);
             signs[j + 1] = of_signs(gamma, p.dot(q), ends, zero);
@@ -234,21 +234,22 @@ impl Calls {
                 | u64::from(ends[1] <= zero);
             any |= special[j + 1];
         }
-        for j in 0..stretch.less(4) {
+        for j in 0..batch.less(4) {
             let beside = |j: usize, places: u32| (signs[j] & (ALIKE | APART)) << places;
-            calls[j + 2] = Self(signs[j + 2] | beside(j + 1, BEFORE) | beside(j + 3, AFTER));
+            required[j + 2] = Self(signs[j + 2] | beside(j + 1, BEFORE) | beside(j + 3, AFTER));
         }
-        let segments = stretch.segments(polygon);
+        let segments = batch.segments(polygon);
         let inside = segments.start.max(2)..segments.end.min(places - 2);
         if any > 0 {
             for j in inside.clone().filter(|&j| special[j] != 0) {
-                let (i, around) = (stretch.segment(polygon, j), [j - 1, j, j + 1]);
+                let (i, around) = (batch.segment(polygon, j), [j - 1, j, j + 1]);
                 let around = around.map(|j| directions.get(j));
-                calls[j] = calls[j].and(of_zeros(polygon, i, around, calls[j], tolerances));
+                required[j] =
+                    required[j].and(of_zeros(polygon, i, around, required[j], tolerances));
             }
         }
         if tolerances.resolution > 0.0 {
-            leave_known(polygon, stretch, tolerances.resolution, calls);
+            leave_known(polygon, batch, tolerances.resolution, required);
         }
         // Last: whether a plane is asked for depends on a turn, asked for or not.
         let (regular, excuse) = if wanted.any(Self::REGULAR) {
@@ -256,119 +257,122 @@ impl Calls {
         } else {
             (Self::REGULAR, Self::DOUBLING_BACK.0)
         };
-        for calls in &mut calls[inside.clone()] {
-            let asked = calls.0 & wanted.0;
-            let spared = (asked & Self::IMPLY_REGULAR.0) | (calls.0 & excuse);
-            calls.0 = asked | if spared != 0 { 0 } else { regular.0 };
+        for required in &mut required[inside.clone()] {
+            let asked = required.0 & wanted.0;
+            let spared = (asked & Self::IMPLY_REGULAR.0) | (required.0 & excuse);
+            required.0 = asked | if spared != 0 { 0 } else { regular.0 };
         }
-        calls[..inside.start].fill(Self::default());
-        calls[inside.end..].fill(Self::default());
+        required[..inside.start].fill(Self::default());
+        required[inside.end..].fill(Self::default());
     }
 
-    /// How many segments call for each criterion, in the order of [`Criterion::ALL`].
-    pub(crate) fn count(calls: &[Self]) -> [usize; Criterion::COUNT] {
+    /// How many segments require each criterion, in the order of [`Criterion::ALL`].
+    pub(crate) fn count(required: &[Self]) -> [usize; Criterion::COUNT] {
         let mut counts = [0; Criterion::COUNT];
-        for calls in calls.chunks(Stretch::OWN) {
-            // Most criteria are asked of all segments of a stretch or of none.
+        for required in required.chunks(SegmentBatch::OWN) {
+            // Most criteria are asked of all segments of a batch or of none.
             let (all, some) =
-                calls.iter().fold((u32::MAX, 0), |(all, some), c| (all & c.0, some | c.0));
+                required.iter().fold((u32::MAX, 0), |(all, some), c| (all & c.0, some | c.0));
             for (count, criterion) in counts.iter_mut().zip(Criterion::ALL) {
                 let of = Self::of(criterion);
                 *count += match (some & of.0, all & of.0) {
                     (0, _) => 0,
-                    (_, 0) => calls.iter().filter(|calls| calls.any(of)).count(),
-                    _ => calls.len(),
+                    (_, 0) => required.iter().filter(|required| required.any(of)).count(),
+                    _ => required.len(),
                 };
             }
         }
         counts
     }
 
-    /// The calls that belong to some criteria, in a polygon that is planar or not.
+    /// The requirements that belong to some criteria, in a polygon that is planar or not.
     pub(crate) fn wanted(criteria: Criteria, planar: bool) -> Self {
         let all = Self::of_all(criteria).0;
         Self(if planar { all & !Self::of(Criterion::Coplanarity).0 } else { all })
     }
 
-    /// The calls, for arithmetic on several segments at once.
+    /// The requirements, for arithmetic on several segments at once.
     #[inline(always)]
     pub(crate) fn bits(self) -> u32 {
         self.0
     }
 
     fn of_all(criteria: Criteria) -> Self {
-        criteria.iter().fold(Self(0), |calls, criterion| calls.and(Self::of(criterion)))
+        criteria.iter().fold(Self(0), |required, criterion| required.and(Self::of(criterion)))
     }
 }
 
-/// Whether all stretches of `count` segments pass a test, on all threads if there are many.
-fn all_stretches(
+/// Whether all batches of `count` segments pass a test, on all threads if there are many.
+fn all_batches(
     count: usize,
-    test: impl Fn(&mut Stretch, Range<usize>) -> bool + Sync + Send,
+    test: impl Fn(&mut SegmentBatch, Range<usize>) -> bool + Sync + Send,
 ) -> bool {
-    let own = |k: usize| k * Stretch::OWN..((k + 1) * Stretch::OWN).min(count);
-    let stretches = 0..count.div_ceil(Stretch::OWN);
+    let own = |k: usize| k * SegmentBatch::OWN..((k + 1) * SegmentBatch::OWN).min(count);
+    let batches = 0..count.div_ceil(SegmentBatch::OWN);
     if count < 2 * BLOCK {
-        let mut stretch = Stretch::default();
-        return stretches.into_iter().all(|k| test(&mut stretch, own(k)));
+        let mut batch = SegmentBatch::default();
+        return batches.into_iter().all(|k| test(&mut batch, own(k)));
     }
-    let stretches = stretches.into_par_iter().with_min_len(BLOCK / Stretch::OWN);
-    stretches.map_init(Stretch::default, |stretch, k| test(stretch, own(k))).all(|passes| passes)
+    let batches = batches.into_par_iter().with_min_len(BLOCK / SegmentBatch::OWN);
+    batches.map_init(SegmentBatch::default, |batch, k| test(batch, own(k))).all(|passes| passes)
 }
 
-/// What `Γ`, `P_m·P_{m+1}` and the sines of the turns call for. Without branches: most segments ask for
+/// What `Γ`, `P_m·P_{m+1}` and the sines of the turns require. Without branches: most segments ask for
 /// nothing else.
 #[inline(always)]
 fn of_signs(gamma: f64, cosine: f64, sines: [f64; 2], zero: f64) -> u32 {
-    const ALONG: Calls = Calls::CONVEXITY.and(Calls::GLOBAL_CONVEXITY).and(Calls::TURNS_ALIKE);
-    const AGAINST: Calls = Calls::INFLECTION.and(Calls::TURNS_APART);
-    let call = |holds: bool, call: Calls| if holds { call.0 } else { 0 };
+    const ALONG: Requirements =
+        Requirements::CONVEXITY.and(Requirements::GLOBAL_CONVEXITY).and(Requirements::TURNS_ALIKE);
+    const AGAINST: Requirements = Requirements::INFLECTION.and(Requirements::TURNS_APART);
+    let call = |holds: bool, call: Requirements| if holds { call.0 } else { 0 };
     let (start, end) = (sines[0] > zero, sines[1] > zero);
     let small = zero * (sines[0] * sines[1]);
     // As with planes: the torsion of a turn that is nearly straight is below the accuracy of the data.
     let clear = zero.sqrt();
     let twists = (sines[0] > clear) & (sines[1] > clear);
-    call(twists & (gamma > zero), Calls::RIGHT_TORSION)
-        | call(twists & (gamma < -zero), Calls::LEFT_TORSION)
+    call(twists & (gamma > zero), Requirements::RIGHT_TORSION)
+        | call(twists & (gamma < -zero), Requirements::LEFT_TORSION)
         | call(start & end & (cosine > small), ALONG)
         | call(start & end & (cosine < -small), AGAINST)
-        | call(start, Calls::TURNING_AT_START)
-        | call(end, Calls::TURNING_AT_END)
+        | call(start, Requirements::TURNING_AT_START)
+        | call(end, Requirements::TURNING_AT_END)
 }
 
-/// What a segment calls for where something is zero, beside what `of_signs` found.
+/// What a segment requires where something is zero, beside what `of_signs` found.
 fn of_zeros(
     polygon: &DataPolygon,
     i: usize,
     chords: [DVec3; 3],
-    signs: Calls,
+    signs: Requirements,
     tolerances: &Tolerances,
-) -> Calls {
+) -> Requirements {
     let [before, own, after] = chords;
     let [p, q] = [before.cross(own), own.cross(after)];
     let sines = [p.length(), q.length()];
-    let mut calls = Calls::default();
+    let mut required = Requirements::default();
     if p.dot(after).abs() <= tolerances.zero && plane_is_known(p, q, sines, tolerances) {
-        if signs.any(Calls::CONVEXITY) {
-            calls = calls.and(Calls::COPLANARITY);
-        } else if signs.any(Calls::INFLECTION) {
-            calls = calls.and(Calls::SPLIT_COPLANARITY);
+        if signs.any(Requirements::CONVEXITY) {
+            required = required.and(Requirements::COPLANARITY);
+        } else if signs.any(Requirements::INFLECTION) {
+            required = required.and(Requirements::SPLIT_COPLANARITY);
         }
     }
-    for (side, call) in [Calls::LINE_AT_START, Calls::LINE_AT_END].into_iter().enumerate() {
+    for (side, call) in
+        [Requirements::LINE_AT_START, Requirements::LINE_AT_END].into_iter().enumerate()
+    {
         if sines[side] > tolerances.zero {
             continue;
         }
         if chords[side].dot(chords[side + 1]) < 0.0 {
-            calls = calls.and(Calls::DOUBLING_BACK);
+            required = required.and(Requirements::DOUBLING_BACK);
         } else {
             // (5.39): with zero curvature the ends have no line of their own.
             if !polygon.is_natural_end(i + side) {
-                calls = calls.and(call);
+                required = required.and(call);
             }
         }
     }
-    calls
+    required
 }
 
 /// Whether `Γ = 0` speaks of a plane, given the binormal vectors and their lengths.
@@ -394,13 +398,13 @@ pub(crate) fn plane_is_known(p: DVec3, q: DVec3, sines: [f64; 2], tolerances: &T
 /// `L_{−1} = D_0` there depends on the unit of the parameter, so `L_{−1} = h_0 D_0/6` is taken, which
 /// gives the true limit.
 #[must_use]
-pub fn separation(polygon: &DataPolygon, segment: usize) -> f64 {
-    separation_between(polygon, [segment; 2], polygon.binormals(segment))
+pub fn inflection_parameter(polygon: &DataPolygon, segment: usize) -> f64 {
+    inflection_parameter_between(polygon, [segment; 2], polygon.binormals(segment))
 }
 
 /// The same for the part of the curve from the start of one segment to the end of another, as if there
 /// were no points between; with the binormal vectors at the two nodes.
-pub(crate) fn separation_between(
+pub(crate) fn inflection_parameter_between(
     polygon: &DataPolygon,
     [first, last]: [usize; 2],
     [p, q]: [DVec3; 2],
@@ -446,7 +450,7 @@ mod tests {
             let points = (0..=n).map(at).collect();
             let ends = Boundary::ZeroCurvature;
             let polygon = DataPolygon::new(points, &Parametrization::Uniform, ends).unwrap();
-            Calls::is_planar(&polygon, &Tolerances::default())
+            Requirements::is_planar(&polygon, &Tolerances::default())
         };
         for n in [1, 2, 3, 4, 5, 70, 2 * BLOCK + 3] {
             assert!(planar(n, |_| 0.0) && planar(n, |k| 1e-12 * (k as f64).cos()), "{n}");
@@ -465,7 +469,7 @@ mod tests {
         let at = |k: usize| DVec3::new(k as f64, (0.7 * k as f64).sin(), 0.0);
         let planar = |points: Vec<DVec3>, ends: Boundary| {
             let polygon = DataPolygon::new(points, &Parametrization::Uniform, ends).unwrap();
-            Calls::is_planar(&polygon, &Tolerances::default())
+            Requirements::is_planar(&polygon, &Tolerances::default())
         };
         let (flat, leaving) = (DVec3::new(1.0, 0.3, 0.0), DVec3::new(0.2, 1.0, 0.5));
         for n in [2, 3, 9, 63, 64, 65, 130, 2 * BLOCK, 2 * BLOCK + 3] {
@@ -485,13 +489,16 @@ mod tests {
             let points = points.map(DVec3::from).to_vec();
             let ends = Boundary::ZeroCurvature;
             let polygon = DataPolygon::new(points, &Parametrization::Chordal, ends).unwrap();
-            Calls::of_polygon(&polygon, &Tolerances::default())[1]
+            Requirements::of_polygon(&polygon, &Tolerances::default())[1]
         };
-        let torsion = Calls::of(Criterion::Torsion);
+        let torsion = Requirements::of(Criterion::Torsion);
         // The tolerance is 1e−9; these determinants are all above it.
         for (sine, expected) in [(1e-3, true), (1e-4, true), (1e-5, false), (1e-7, false)] {
             assert_eq!(asked(sine).any(torsion), expected, "{sine}");
-            assert!(asked(sine).any(Calls::CONVEXITY.and(Calls::INFLECTION)), "{sine}");
+            assert!(
+                asked(sine).any(Requirements::CONVEXITY.and(Requirements::INFLECTION)),
+                "{sine}"
+            );
         }
     }
 }

@@ -12,11 +12,11 @@ use super::{
     Question, Segment,
     corner::Beyond,
     cubics::{Single, single_pieces},
-    decide, measure,
+    margin, prove_sign,
 };
 use crate::{
-    Checker, Criteria, Criterion, Faults, Notes, Record, ShapeReport, Tolerances, Undecided,
-    checker::Cubic, notes::notes, rounding::LEG_ERROR,
+    Checker, Criteria, Criterion, NodeConditions, Record, ShapeReport, Tolerances, Undecided,
+    Violations, checker::Cubic, node_conditions::node_conditions, rounding::LEG_ERROR,
 };
 
 /// Segments from on which they are checked on all threads. Not fewer, and none of rayon's iterators below:
@@ -109,7 +109,7 @@ impl<'a> CurveChecker<'a> {
             let (argument, value) = ("interpolation", interpolation);
             return Err(InputError::Scalar { argument, value, allowed: "non-negative" }.into());
         }
-        let dimensions = [polygon.dimension().len(), curve.dimension().len()];
+        let dimensions = [polygon.dimension().count(), curve.dimension().count()];
         if dimensions[0] != dimensions[1] {
             let [points, curve] = dimensions;
             return Err(CurveError::Dimension { points, curve });
@@ -133,7 +133,7 @@ impl<'a> CurveChecker<'a> {
         Self { checker: self.checker.with_straight_segments(segments, free), ..self }
     }
 
-    /// The criteria's own checker: what the polygon calls for.
+    /// The criteria's own checker: what the polygon requires.
     #[must_use]
     pub fn checker(&self) -> &Checker<'a> {
         &self.checker
@@ -154,15 +154,15 @@ impl<'a> CurveChecker<'a> {
             Some(cubic) => Some(self.check_cubic(i, &cubic)),
             None => go_on().is_continue().then(|| self.check_segment(i)),
         };
-        let says = |found: &Option<Found>| found.as_ref().is_none_or(|found| !found.is_empty());
+        let says = |found: &Option<Scan>| found.as_ref().is_none_or(|found| !found.is_empty());
         let open = self.open_segments();
-        let found: Vec<Found> = if open.len() < MANY {
+        let found: Vec<Scan> = if open.len() < MANY {
             open.iter().map(of).filter(says).collect::<Option<_>>()?
         } else {
             open.par_iter().with_min_len(64).map(of).filter(says).collect::<Option<_>>()?
         };
         let mut report = self.checker.blank_report();
-        for Found { records, undecided } in found {
+        for Scan { records, undecided } in found {
             for record in &records {
                 report.counts[record.criterion as usize].violated += 1;
             }
@@ -191,7 +191,7 @@ impl<'a> CurveChecker<'a> {
         let Some(question) = self.checker.question(segment, criterion) else { return record };
         let pieces = self.segment(segment);
         let sign = self.verdict(segment, &pieces, &question);
-        let measured = measure(&pieces, &question);
+        let measured = margin(&pieces, &question);
         record.applicable = true;
         record.satisfied = sign == Sign::Positive;
         // The proof decides on which side of zero the margin lies.
@@ -210,7 +210,7 @@ impl<'a> CurveChecker<'a> {
     pub fn undecided(&self, segment: usize, criterion: Criterion) -> Option<Undecided> {
         if let Some(cubic) = self.cubic(segment) {
             let (of, [open, violated]) =
-                (Faults::of(criterion), self.cubic_verdict(segment, &cubic));
+                (Violations::of(criterion), self.cubic_verdict(segment, &cubic));
             let interval = self.checker.interval(segment, open.only(of));
             let is_open = open.any(of) && !violated.any(of);
             return is_open.then_some(Undecided { segment, criterion, interval });
@@ -227,28 +227,31 @@ impl<'a> CurveChecker<'a> {
 
     /// What the paper says of nodes and of oscillation, as information.
     #[must_use]
-    pub fn notes(&self) -> Notes {
-        self.notes_with(&|| ControlFlow::Continue(())).unwrap_or_default()
+    pub fn node_conditions(&self) -> NodeConditions {
+        self.node_conditions_with(&|| ControlFlow::Continue(())).unwrap_or_default()
     }
 
-    /// As [`CurveChecker::notes`], but calls `go_on` before each node and segment, and returns `None` once
+    /// As [`CurveChecker::node_conditions`], but calls `go_on` before each node and segment, and returns `None` once
     /// that breaks.
     #[must_use]
-    pub fn notes_with(&self, go_on: &(dyn Fn() -> ControlFlow<()> + Sync)) -> Option<Notes> {
-        notes(&self.checker, |i| self.segment(i), go_on)
+    pub fn node_conditions_with(
+        &self,
+        go_on: &(dyn Fn() -> ControlFlow<()> + Sync),
+    ) -> Option<NodeConditions> {
+        node_conditions(&self.checker, |i| self.segment(i), go_on)
     }
 
-    fn check_segment(&self, i: usize) -> Found {
-        let mut found = Found::default();
-        let calls = self.checker.calls()[i];
-        if calls.is_empty() {
+    fn check_segment(&self, i: usize) -> Scan {
+        let mut found = Scan::default();
+        let required = self.checker.requirements()[i];
+        if required.is_empty() {
             return found;
         }
         if self.is_proved(i) {
             return found;
         }
         let pieces = self.segment(i);
-        for criterion in calls.criteria().iter() {
+        for criterion in required.criteria().iter() {
             let Some(question) = self.checker.question(i, criterion) else { continue };
             match self.verdict(i, &pieces, &question) {
                 Sign::Positive => {}
@@ -264,7 +267,7 @@ impl<'a> CurveChecker<'a> {
 
     /// The verdict on a segment, corners at its ends included.
     fn verdict(&self, i: usize, pieces: &Segment, question: &Question) -> Sign {
-        let sign = decide(pieces, question);
+        let sign = prove_sign(pieces, question);
         if question.criterion != Criterion::Turning {
             return sign;
         }
@@ -297,7 +300,7 @@ impl<'a> CurveChecker<'a> {
         let origin = polygon.points()[i];
         let parts = self.curve.between([u[i], u[i + 1]], origin);
         Segment::new(&parts, self.curve.is_rational(), length(origin))
-            .beside(self.checker.calls()[i])
+            .beside(self.checker.requirements()[i])
     }
 
     /// Whether the curve passes through the points and does not jump.
@@ -349,12 +352,12 @@ impl<'a> CurveChecker<'a> {
 }
 
 #[derive(Debug, Default)]
-pub(super) struct Found {
+pub(super) struct Scan {
     pub(super) records: Vec<Record>,
     pub(super) undecided: Vec<Undecided>,
 }
 
-impl Found {
+impl Scan {
     fn is_empty(&self) -> bool {
         self.records.is_empty() && self.undecided.is_empty()
     }

@@ -5,7 +5,7 @@
 use glam::{DVec3, DVec4};
 use shapespline_geometry::{BezierPart, polynomial::Polynomial};
 
-use crate::{Calls, rounding::LEG_ERROR};
+use crate::{Requirements, rounding::LEG_ERROR};
 
 /// The most that a control point is off by, over its distance from the origin: those are known to 15 significant
 /// digits, as those of single cubics are. (√3 times what a coordinate is off by.)
@@ -70,13 +70,13 @@ impl Segment {
         Self { pieces: parts.iter().map(piece).collect() }
     }
 
-    /// The same beside segments that are straight by construction, as its calls say.
-    pub(crate) fn beside(mut self, calls: Calls) -> Self {
+    /// The same beside segments that are straight by construction, as its requirements say.
+    pub(crate) fn beside(mut self, required: Requirements) -> Self {
         if let Some(first) = self.pieces.first_mut() {
-            first.straight[0] = calls.any(Calls::STRAIGHT_BEFORE);
+            first.straight[0] = required.any(Requirements::STRAIGHT_BEFORE);
         }
         if let Some(last) = self.pieces.last_mut() {
-            last.straight[1] = calls.any(Calls::STRAIGHT_AFTER);
+            last.straight[1] = required.any(Requirements::STRAIGHT_AFTER);
         }
         self
     }
@@ -325,7 +325,7 @@ mod tests {
         }
     }
 
-    /// Found on a hiking track: a part that ended 1e−15 after a break left a piece without extent, whose
+    /// Scan on a hiking track: a part that ended 1e−15 after a break left a piece without extent, whose
     /// tangent is zero and fails every criterion.
     #[test]
     fn a_part_that_ends_at_a_break_has_no_sliver_beyond_it() {

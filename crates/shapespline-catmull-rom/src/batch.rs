@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! The largest handles of one stretch of a polygon after another, with their check.
+//! The largest handles of one batch of a polygon after another, with their check.
 //!
-//! The loops work on several segments at once (see [`Stretch`]); what is rare, lines and ends, comes
+//! The loops work on several segments at once (see [`SegmentBatch`]); what is rare, lines and ends, comes
 //! after them.
 
 use std::ops::Range;
 
-use shapespline_criteria::{Calls, Criterion, Faults, StretchCalls, StretchChecker};
-use shapespline_geometry::{DVec3, DataPolygon, Lanes, Stretch, near_one};
+use shapespline_criteria::{BatchChecker, BatchRequirements, Criterion, Requirements, Violations};
+use shapespline_geometry::{DVec3, DataPolygon, SegmentBatch, VectorLanes, normalized_scale};
 
 use crate::{
     Continuity, HandleOptions,
@@ -18,32 +18,32 @@ use crate::{
 };
 
 /// One number a place.
-type Row = [f64; Stretch::ROOM];
+type Row = [f64; SegmentBatch::ROOM];
 
-/// The handles of a stretch, with room to work in.
+/// The handles of a batch, with room to work in.
 #[derive(Debug, Clone)]
-pub(crate) struct StretchHandles {
-    stretch: Stretch,
-    calls: StretchCalls,
-    tangents: Lanes,
+pub(crate) struct BatchHandles {
+    batch: SegmentBatch,
+    required: BatchRequirements,
+    tangents: VectorLanes,
     /// The legs of each segment.
-    first: Lanes,
-    last: Lanes,
+    first: VectorLanes,
+    last: VectorLanes,
     /// The factors that each segment allows at its ends; then those its legs have.
     at_start: Row,
     at_end: Row,
 }
 
-impl Default for StretchHandles {
+impl Default for BatchHandles {
     fn default() -> Self {
         Self {
-            stretch: Stretch::default(),
-            calls: [Calls::default(); Stretch::ROOM],
-            tangents: Lanes::default(),
-            first: Lanes::default(),
-            last: Lanes::default(),
-            at_start: [1.0; Stretch::ROOM],
-            at_end: [1.0; Stretch::ROOM],
+            batch: SegmentBatch::default(),
+            required: [Requirements::default(); SegmentBatch::ROOM],
+            tangents: VectorLanes::default(),
+            first: VectorLanes::default(),
+            last: VectorLanes::default(),
+            at_start: [1.0; SegmentBatch::ROOM],
+            at_end: [1.0; SegmentBatch::ROOM],
         }
     }
 }
@@ -52,7 +52,7 @@ impl Default for StretchHandles {
 #[derive(Debug, Default)]
 pub(crate) struct Found {
     /// The segments that fail, ascending.
-    pub(crate) faults: Vec<(usize, Faults)>,
+    pub(crate) violations: Vec<(usize, Violations)>,
     /// How many segments each criterion applies to.
     pub(crate) applicable: [usize; Criterion::COUNT],
     /// Whether some legs are not finite, or leave no room for sums of them.
@@ -62,7 +62,7 @@ pub(crate) struct Found {
 impl Found {
     /// This and what was found on the segments after it.
     pub(crate) fn and(mut self, after: Self) -> Self {
-        self.faults.extend(after.faults);
+        self.violations.extend(after.violations);
         self.count(after.applicable);
         self.cramped |= after.cramped;
         self
@@ -75,36 +75,36 @@ impl Found {
     }
 }
 
-impl StretchHandles {
-    /// The handles of some segments, at most [`Stretch::OWN`], into `legs`; the smaller factor at the
+impl BatchHandles {
+    /// The handles of some segments, at most [`SegmentBatch::OWN`], into `legs`; the smaller factor at the
     /// first node of each into `factors`. Returns that at the last node.
     ///
     /// `tangents`: one per point, or those of the parametrisation.
     pub(crate) fn make(
         &mut self,
         (polygon, tangents): (&DataPolygon, Option<&[DVec3]>),
-        checker: &StretchChecker<'_>,
+        checker: &BatchChecker<'_>,
         options: &HandleOptions,
         own: Range<usize>,
         (legs, factors): (&mut [[DVec3; 2]], &mut [f64]),
         found: &mut Found,
     ) -> f64 {
-        self.stretch.load(polygon, own);
-        checker.calls(&self.stretch, &mut self.calls);
+        self.batch.load(polygon, own);
+        checker.requirements(&self.batch, &mut self.required);
         self.take_full_legs(polygon, tangents);
         self.limit(polygon, options);
         self.join(options.continuity);
         self.shorten(polygon);
 
         let all = [&self.first, &self.last];
-        checker.faults(&self.stretch, &self.calls, all, &mut found.faults);
-        found.count(StretchChecker::applicable(&self.stretch, &self.calls));
-        found.cramped |= !all.iter().all(|legs| legs.have_room(self.stretch.own()));
-        for (j, (legs, factor)) in self.stretch.own().zip(legs.iter_mut().zip(factors)) {
+        checker.unproved(&self.batch, &self.required, all, &mut found.violations);
+        found.count(BatchChecker::applicable(&self.batch, &self.required));
+        found.cramped |= !all.iter().all(|legs| legs.have_room(self.batch.own()));
+        for (j, (legs, factor)) in self.batch.own().zip(legs.iter_mut().zip(factors)) {
             *legs = [self.first.get(j), self.last.get(j)];
             *factor = self.factor(j - 1);
         }
-        self.factor(self.stretch.own().end - 1)
+        self.factor(self.batch.own().end - 1)
     }
 
     /// The smaller factor at the node at the end of a place.
@@ -116,63 +116,63 @@ impl StretchHandles {
     /// The full legs: a third of the spacing along the tangents at the nodes. A leg at an end of zero
     /// curvature is zero here.
     fn take_full_legs(&mut self, polygon: &DataPolygon, given: Option<&[DVec3]>) {
-        let Self { stretch, tangents, first, last, .. } = self;
-        let (chords, spacings) = (stretch.chords(), stretch.spacings());
+        let Self { batch, tangents, first, last, .. } = self;
+        let (chords, spacings) = (batch.chords(), batch.spacings());
         if let Some(given) = given {
-            for j in 0..stretch.less(1) {
-                tangents.set(j, given[stretch.segment(polygon, j) + 1]);
+            for j in 0..batch.less(1) {
+                tangents.set(j, given[batch.segment(polygon, j) + 1]);
             }
         } else {
-            for j in 0..stretch.less(1) {
+            for j in 0..batch.less(1) {
                 let around = [chords.get(j), chords.get(j + 1)];
                 tangents.set(j, tangent_between(around, [spacings[j], spacings[j + 1]]));
             }
         }
-        for (end, node) in ends(stretch, polygon).into_iter().zip([0, polygon.segments()]) {
+        for (end, node) in ends(batch, polygon).into_iter().zip([0, polygon.segments()]) {
             if let Some(j) = end {
                 tangents.set(j, tangent(polygon, node).unwrap_or_default());
             }
         }
-        for j in 0..stretch.less(2) {
+        for j in 0..batch.less(2) {
             let third = spacings[j + 1] / 3.0;
             first.set(j + 1, tangents.get(j) * third);
             last.set(j + 1, tangents.get(j + 1) * third);
         }
     }
 
-    /// The largest factors, up to one, that stay below `safety` times the bounds which the calls of the
+    /// The largest factors, up to one, that stay below `safety` times the bounds which the requirements of the
     /// polygon put on them.
     fn limit(&mut self, polygon: &DataPolygon, options: &HandleOptions) {
-        let Self { stretch, calls, first, last, at_start, at_end, .. } = self;
-        let (chords, binormals) = (stretch.chords(), stretch.binormals());
+        let Self { batch, required, first, last, at_start, at_end, .. } = self;
+        let (chords, binormals) = (batch.chords(), batch.binormals());
         let legs = |j: usize| [first.get(j), last.get(j)];
         // Written out: `map` on arrays keeps the loop from working on several at once.
         let around = |j: usize| {
             [binormals.get(j), binormals.get(j + 1), binormals.get(j + 2), binormals.get(j + 3)]
         };
         let safety = options.safety;
-        if stretch.is_ordinary() {
-            for j in 0..stretch.less(4) {
-                let bounds = of_signs(calls[j + 2], legs(j + 2), chords.get(j + 2), around(j));
+        if batch.is_ordinary() {
+            for j in 0..batch.less(4) {
+                let bounds = of_signs(required[j + 2], legs(j + 2), chords.get(j + 2), around(j));
                 [at_start[j + 2], at_end[j + 2]] = limits(bounds, safety);
             }
         } else {
-            for j in 0..stretch.less(4) {
-                let (legs, chord) = near_one(legs(j + 2), chords.get(j + 2));
-                let bounds = of_signs(calls[j + 2], legs, chord, around(j));
+            for j in 0..batch.less(4) {
+                let (legs, chord) = normalized_scale(legs(j + 2), chords.get(j + 2));
+                let bounds = of_signs(required[j + 2], legs, chord, around(j));
                 [at_start[j + 2], at_end[j + 2]] = limits(bounds, safety);
             }
         }
         let sine = options.tolerances.collinearity;
         let cotangent = ((1.0 - sine) * (1.0 + sine)).sqrt() / sine;
-        for j in (2..stretch.less(2)).filter(|&j| has_lines(calls[j])) {
-            let direction = stretch.directions().get(j);
-            let [p, q] = of_lines(calls[j], legs(j), chords.get(j), direction, cotangent);
+        for j in (2..batch.less(2)).filter(|&j| has_lines(required[j])) {
+            let direction = batch.directions().get(j);
+            let [p, q] = of_lines(required[j], legs(j), chords.get(j), direction, cotangent);
             at_start[j] = at_start[j].min(safety * p);
             at_end[j] = at_end[j].min(safety * q);
         }
         // At an open end there is one segment, and what it allows.
-        let [start, end] = ends(stretch, polygon);
+        let [start, end] = ends(batch, polygon);
         if let Some(j) = start {
             at_end[j] = at_start[j + 1];
         }
@@ -184,13 +184,13 @@ impl StretchHandles {
     /// From the factors that segments allow to those their legs have: the smaller one at a node, for
     /// both where they have to be one.
     fn join(&mut self, continuity: Continuity) {
-        let Self { stretch, calls, at_start, at_end, .. } = self;
-        for j in 0..stretch.less(5) {
+        let Self { batch, required, at_start, at_end, .. } = self;
+        for j in 0..batch.less(5) {
             let j = j + 2;
             let (q, p) = (at_end[j], at_start[j + 1]);
             // In an inflecting coplanar segment the legs decide where it inflects: one factor a node.
             let one = continuity == Continuity::C1
-                || calls[j].and(calls[j + 1]).any(Calls::SPLIT_COPLANARITY);
+                || required[j].and(required[j + 1]).any(Requirements::SPLIT_COPLANARITY);
             let least = smaller(q, p);
             (at_end[j], at_start[j + 1]) = if one { (least, least) } else { (q, p) };
         }
@@ -199,20 +199,20 @@ impl StretchHandles {
     /// Legs times their factors, and those at ends of zero curvature, for which `a = (L − c)/2`, or any
     /// part of it, makes `a × b` vanish.
     fn shorten(&mut self, polygon: &DataPolygon) {
-        let Self { stretch, first, last, at_start, at_end, .. } = self;
-        for j in 0..stretch.less(2 * Stretch::BESIDE) {
-            let j = j + Stretch::BESIDE;
+        let Self { batch, first, last, at_start, at_end, .. } = self;
+        for j in 0..batch.less(2 * SegmentBatch::BESIDE) {
+            let j = j + SegmentBatch::BESIDE;
             first.set(j, first.get(j) * at_start[j]);
             last.set(j, last.get(j) * at_end[j]);
         }
         // The ends of closed polygons are none.
         let natural = polygon.tangents().map(|tangent| tangent.is_none());
-        let [start, end] = ends(stretch, polygon);
+        let [start, end] = ends(batch, polygon);
         let free = [start.map(|j| j + 1).filter(|_| natural[0]), end.filter(|_| natural[1])];
-        for j in free.into_iter().flatten().filter(|j| stretch.own().contains(j)) {
+        for j in free.into_iter().flatten().filter(|j| batch.own().contains(j)) {
             let scale = |end: Option<usize>, factor: f64| (end == Some(j)).then_some(factor);
             let scales = [scale(free[0], at_start[j]), scale(free[1], at_end[j])];
-            let [a, c] = freed(stretch.chords().get(j), [first.get(j), last.get(j)], scales);
+            let [a, c] = freed(batch.chords().get(j), [first.get(j), last.get(j)], scales);
             first.set(j, a);
             last.set(j, c);
         }
@@ -233,10 +233,10 @@ fn limits(bounds: [f64; 2], safety: f64) -> [f64; 2] {
 }
 
 /// The places at the end of which the first and the last node of an open polygon lie.
-fn ends(stretch: &Stretch, polygon: &DataPolygon) -> [Option<usize>; 2] {
-    let segments = stretch.segments(polygon);
+fn ends(batch: &SegmentBatch, polygon: &DataPolygon) -> [Option<usize>; 2] {
+    let segments = batch.segments(polygon);
     let last = segments.end - 1;
-    let inner = !polygon.is_closed() && last + 1 < stretch.places();
+    let inner = !polygon.is_closed() && last + 1 < batch.places();
     [segments.start.checked_sub(1), inner.then_some(last)]
 }
 
@@ -248,15 +248,15 @@ mod tests {
 
     use super::*;
 
-    /// Everything that is made of a polygon in stretches of some width.
-    fn in_stretches(
+    /// Everything that is made of a polygon in batches of some width.
+    fn in_batches(
         polygon: &DataPolygon,
         options: &HandleOptions,
         width: usize,
     ) -> (Vec<[DVec3; 2]>, Vec<f64>, Found) {
         let n = polygon.segments();
-        let checker = StretchChecker::new(polygon, options.criteria, options.tolerances);
-        let mut handles = StretchHandles::default();
+        let checker = BatchChecker::new(polygon, options.criteria, options.tolerances);
+        let mut handles = BatchHandles::default();
         let (mut legs, mut factors) = (vec![[DVec3::ZERO; 2]; n], vec![0.0; n]);
         let (mut found, mut last) = (Found::default(), 0.0);
         for (k, out) in legs.chunks_mut(width).zip(factors.chunks_mut(width)).enumerate() {
@@ -267,7 +267,7 @@ mod tests {
         (legs, factors, found)
     }
 
-    /// To the same bits wherever stretches begin and end, where planes, lines and turns lie across the
+    /// To the same bits wherever batches begin and end, where planes, lines and turns lie across the
     /// seams and sizes are any; the verdicts are those of the checker that sees one segment at a time.
     #[test]
     fn stretches_agree_with_each_other_and_with_the_checker() {
@@ -295,16 +295,16 @@ mod tests {
                     DataPolygon::new(points, &Parametrization::Centripetal, boundary).unwrap();
                 for continuity in [Continuity::C1, Continuity::G1] {
                     let options = HandleOptions { continuity, ..HandleOptions::default() };
-                    let (legs, factors, found) = in_stretches(&polygon, &options, Stretch::OWN);
+                    let (legs, factors, found) = in_batches(&polygon, &options, SegmentBatch::OWN);
                     for width in [1, 7] {
-                        let other = in_stretches(&polygon, &options, width);
+                        let other = in_batches(&polygon, &options, width);
                         assert_eq!(legs, other.0);
                         assert_eq!(factors, other.1);
-                        assert_eq!(found.faults, other.2.faults);
+                        assert_eq!(found.violations, other.2.violations);
                         assert_eq!(found.applicable, other.2.applicable);
                     }
                     let checker = Checker::new(&polygon, options.criteria, options.tolerances);
-                    assert_eq!(found.faults, checker.all_faults(|i| legs[i]));
+                    assert_eq!(found.violations, checker.all_unproved(|i| legs[i]));
                     assert_eq!(found.applicable, checker.applicable(0..n));
                     if n == 400 {
                         shortened[k] |= factors.iter().any(|&f| f < 1.0);

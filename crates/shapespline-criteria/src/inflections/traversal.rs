@@ -4,11 +4,11 @@
 
 use glam::DVec3;
 
-use super::sequence::{Item, Line, Sequence, View};
+use super::sign_sequence::{Item, Line, Sequence, View};
 
 /// The most that a walk has seen, or all walks have.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Most {
+pub(super) struct Maximum {
     pub(super) count: usize,
     /// No direction shows more than this.
     pub(super) upper: usize,
@@ -19,7 +19,7 @@ pub(super) struct Most {
     pub(super) walk: usize,
 }
 
-impl Most {
+impl Maximum {
     pub(super) const NONE: Self =
         Self { count: 0, upper: 0, boundary: DVec3::Z, inwards: DVec3::ZERO, walk: usize::MAX };
 
@@ -91,9 +91,9 @@ impl Sweep<'_> {
         events: &[Event],
         start: Place,
         between: impl Fn(&Event, &Event) -> Place,
-        best: &mut Most,
+        best: &mut Maximum,
     ) {
-        let keep = |best: &mut Most, count: usize, place: Place| {
+        let keep = |best: &mut Maximum, count: usize, place: Place| {
             if count > best.count || best.inwards == DVec3::ZERO {
                 best.count = count;
                 (best.boundary, best.inwards) = (place.w.normalize(), place.inwards.normalize());
