@@ -50,7 +50,7 @@ class PolygonShape:
         Discrete torsion det[L[i - 1], L[i], L[i + 1]] / (‖P[i]‖ ‖P[i + 1]‖) in reciprocal units of
         the points; NaN where a binormal vanishes.
     calls : tuple[tuple[str, ...], ...]
-        The default criteria that each segment calls for.
+        The default criteria that each segment requires.
 
     Examples
     --------
@@ -81,7 +81,7 @@ class PolygonShape:
         return sealed(type(self), *(getattr(self, field.name) for field in fields(self)))
 
     def counts(self) -> dict[str, int]:
-        """Return how many segments call for each criterion, those that none calls for left out.
+        """Return how many segments require each criterion, those that none requires left out.
 
         Examples
         --------
@@ -119,7 +119,7 @@ class PolygonShape:
 
     def __str__(self) -> str:
         """Return a table, one line a segment."""
-        lines = [repr(self)[1:-1], f"{'segment':>7}{'turn °':>9}{'torsion':>13}  calls for"]
+        lines = [repr(self)[1:-1], f"{'segment':>7}{'turn °':>9}{'torsion':>13}  requires"]
         degrees = np.degrees(self.turning_angles)
         for i, names in enumerate(self.calls[:LISTED]):
             torsion = f"{self.torsion[i]:13.4g}" if np.isfinite(self.torsion[i]) else f"{'–':>13}"
@@ -168,7 +168,7 @@ def polygon_shape(
     -------
     PolygonShape
         Chords, binormals, turning angles, discrete torsion, and the criteria that each segment
-        calls for.
+        requires.
 
     Raises
     ------

@@ -84,7 +84,7 @@ class OscillationRecord(NamedTuple):
     Attributes
     ----------
     segment : int
-        Index of the segment, which calls for coplanarity.
+        Index of the segment, which requires coplanarity.
     crossings : int
         How often it crosses the plane between its points.
     least : int
@@ -138,7 +138,7 @@ for _class, _fields in (
     (
         OscillationRecord,
         {
-            "segment": "Index of the segment, which calls for coplanarity.",
+            "segment": "Index of the segment, which requires coplanarity.",
             "crossings": "How often it crosses the plane between its points.",
             "least": "The least crossings that its end tangents allow.",
             "satisfied": "Whether there are no more than the least.",

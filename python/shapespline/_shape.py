@@ -111,7 +111,7 @@ def check_shape(
 
     See Also
     --------
-    polygon_shape : what the points alone call for.
+    polygon_shape : what the points alone require.
     inflection_count : how often a curve changes the sense in which it turns.
 
     Notes

@@ -50,7 +50,7 @@ impl Default for BatchHandles {
 
 /// What a check of handles found.
 #[derive(Debug, Default)]
-pub(crate) struct Found {
+pub(crate) struct HandleScan {
     /// The segments that fail, ascending.
     pub(crate) violations: Vec<(usize, Violations)>,
     /// How many segments each criterion applies to.
@@ -59,7 +59,7 @@ pub(crate) struct Found {
     pub(crate) cramped: bool,
 }
 
-impl Found {
+impl HandleScan {
     /// This and what was found on the segments after it.
     pub(crate) fn and(mut self, after: Self) -> Self {
         self.violations.extend(after.violations);
@@ -87,7 +87,7 @@ impl BatchHandles {
         options: &HandleOptions,
         own: Range<usize>,
         (legs, factors): (&mut [[DVec3; 2]], &mut [f64]),
-        found: &mut Found,
+        found: &mut HandleScan,
     ) -> f64 {
         self.batch.load(polygon, own);
         checker.requirements(&self.batch, &mut self.required);
@@ -253,12 +253,12 @@ mod tests {
         polygon: &DataPolygon,
         options: &HandleOptions,
         width: usize,
-    ) -> (Vec<[DVec3; 2]>, Vec<f64>, Found) {
+    ) -> (Vec<[DVec3; 2]>, Vec<f64>, HandleScan) {
         let n = polygon.segments();
         let checker = BatchChecker::new(polygon, options.criteria, options.tolerances);
         let mut handles = BatchHandles::default();
         let (mut legs, mut factors) = (vec![[DVec3::ZERO; 2]; n], vec![0.0; n]);
-        let (mut found, mut last) = (Found::default(), 0.0);
+        let (mut found, mut last) = (HandleScan::default(), 0.0);
         for (k, out) in legs.chunks_mut(width).zip(factors.chunks_mut(width)).enumerate() {
             let own = k * width..k * width + out.0.len();
             last = handles.make((polygon, None), &checker, options, own, out, &mut found);

@@ -10,7 +10,7 @@ use shapespline_geometry::{DVec3, DataPolygon, SegmentBatch};
 
 use crate::{
     Directions, HandleOptions, balanced,
-    batch::{BatchHandles, Found},
+    batch::{BatchHandles, HandleScan},
 };
 
 /// Segments that a thread works through at least.
@@ -24,7 +24,7 @@ pub(crate) struct Checked {
     pub(crate) legs: Vec<[DVec3; 2]>,
     /// What closed forms shortened the handles by; the smaller factor at each distinct node.
     pub(crate) factors: Vec<f64>,
-    pub(crate) found: Found,
+    pub(crate) found: HandleScan,
 }
 
 /// The largest handles within the bounds, checked. Cost O(N), on all threads for long curves.
@@ -53,7 +53,7 @@ pub(crate) fn limited(
     let work = |handles: &mut BatchHandles,
                 start: usize,
                 (legs, factors): (&mut [[DVec3; 2]], &mut [f64])| {
-        let (mut found, mut last) = (Found::default(), 1.0);
+        let (mut found, mut last) = (HandleScan::default(), 1.0);
         let batches = legs.chunks_mut(SegmentBatch::OWN).zip(factors.chunks_mut(SegmentBatch::OWN));
         for (k, out) in batches.enumerate() {
             let first = start + k * SegmentBatch::OWN;
@@ -67,12 +67,12 @@ pub(crate) fn limited(
         work(handles, 0, (&mut legs, &mut factors[..n]))
     } else {
         let parts = legs.par_chunks_mut(PART).zip(factors[..n].par_chunks_mut(PART)).enumerate();
-        let parts: Vec<(Found, f64)> = parts
+        let parts: Vec<(HandleScan, f64)> = parts
             .map_init(BatchHandles::default, |handles, (k, out)| work(handles, k * PART, out))
             .collect();
         parts
             .into_iter()
-            .fold((Found::default(), 1.0), |(found, _), (part, last)| (found.and(part), last))
+            .fold((HandleScan::default(), 1.0), |(found, _), (part, last)| (found.and(part), last))
     };
     // An open curve has one more node, its end.
     factors[n..].fill(last);

@@ -25,7 +25,7 @@ use crate::{
 
 /// What the ladder came to.
 #[derive(Clone)]
-pub(crate) struct Found<'a> {
+pub(crate) struct LadderResult<'a> {
     pub(crate) plain: &'a Plain<'a>,
     /// The segments that were solved for; all others are the plain cubic's.
     pub(crate) solved: BTreeMap<usize, Solved>,
@@ -52,9 +52,13 @@ pub(crate) fn climb<'a>(
     plain: &'a Plain<'a>,
     options: &FairOptions,
     control: &mut Control<'_>,
-) -> Found<'a> {
-    let mut found =
-        Found { plain, solved: BTreeMap::new(), method: Method::Cubic, open: BTreeSet::new() };
+) -> LadderResult<'a> {
+    let mut found = LadderResult {
+        plain,
+        solved: BTreeMap::new(),
+        method: Method::Cubic,
+        open: BTreeSet::new(),
+    };
     let rules = rules(options);
     match options.energy {
         Energy::Parametric => found.open_windows(demands, rules, control),
@@ -66,11 +70,11 @@ pub(crate) fn climb<'a>(
 /// Turns a curve that keeps the shape into directions that are asked for at some nodes: from where it is if
 /// that goes, which it does for those that are near its own; or else by the ladder.
 pub(crate) fn turn<'a>(
-    free: &Found<'a>,
+    free: &LadderResult<'a>,
     demands: &Demands<'_>,
     options: &FairOptions,
     control: &mut Control<'_>,
-) -> Found<'a> {
+) -> LadderResult<'a> {
     if free.open.is_empty() {
         let mut found = free.clone();
         if found.turn(demands, options.energy, rules(options), control) {
@@ -86,12 +90,12 @@ const SHARES: [f64; 9] = [1.0 / 16.0, 0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.87
 /// Turns a curve that keeps the shape as far into the directions asked for as it goes on keeping it: by shares
 /// at the nodes around the segments where it did not, and else at all. Returns the directions it has then.
 pub(crate) fn turn_nearly<'a>(
-    free: &Found<'a>,
+    free: &LadderResult<'a>,
     open: &BTreeSet<usize>,
     demands: &Demands<'_>,
     options: &FairOptions,
     control: &mut Control<'_>,
-) -> Option<(Found<'a>, Vec<(usize, DVec3)>)> {
+) -> Option<(LadderResult<'a>, Vec<(usize, DVec3)>)> {
     let count = demands.checker.polygon().nodes();
     let is_near = |node: usize| open.iter().any(|&i| (node + count + 1 - i) % count <= 3);
     for everywhere in [false, true] {
@@ -122,7 +126,7 @@ fn rules(options: &FairOptions) -> Rules {
     Rules { cones, exact_middles: false }
 }
 
-impl Found<'_> {
+impl LadderResult<'_> {
     /// The segments in which the plain cubic fails.
     pub(crate) fn failing(&self, demands: &Demands<'_>) -> Vec<usize> {
         let checker = demands.checker;

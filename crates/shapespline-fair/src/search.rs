@@ -8,7 +8,7 @@ use crate::{
     Method,
     chain::Chain,
     control::Control,
-    ladder::{Found, Solved, certify, fall_back, index},
+    ladder::{LadderResult, Solved, certify, fall_back, index},
     rows::Rules,
     segment::Demands,
     solve::{LAST, Means, finish, quicken, solve},
@@ -22,7 +22,7 @@ const MANY: usize = 8192;
 /// nothing else helps.
 const WIDE: usize = 4 * BESIDE;
 
-impl Found<'_> {
+impl LadderResult<'_> {
     /// Solves windows around the failing segments; those in which that fails, wider ones.
     pub(crate) fn open_windows(
         &mut self,

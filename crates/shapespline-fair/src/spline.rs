@@ -25,7 +25,7 @@ use crate::{
     element::Node,
     energy,
     export::{Pieces, assemble},
-    ladder::{Found, climb, turn, turn_nearly},
+    ladder::{LadderResult, climb, turn, turn_nearly},
     segment::{Demands, Units},
     window::is_given,
 };
@@ -388,7 +388,7 @@ impl Whole {
 }
 
 /// The energies of a curve and of the plain cubic, in the user's units.
-fn energies(demands: &Demands<'_>, found: &Found<'_>, energy: Energy) -> [f64; 2] {
+fn energies(demands: &Demands<'_>, found: &LadderResult<'_>, energy: Energy) -> [f64; 2] {
     let Units { length, time } = demands.units;
     let of = |i: usize, [start, end]: [Node; 2]| {
         let span = demands.span(i);
@@ -410,7 +410,7 @@ fn energies(demands: &Demands<'_>, found: &Found<'_>, energy: Energy) -> [f64; 2
 }
 
 /// By how much given end tangents were shortened.
-fn tangent_scale(demands: &Demands<'_>, found: &Found<'_>) -> [f64; 2] {
+fn tangent_scale(demands: &Demands<'_>, found: &LadderResult<'_>) -> [f64; 2] {
     let polygon = demands.checker.polygon();
     [0, 1].map(|end| {
         let i = end * (polygon.segments() - 1);

@@ -21,7 +21,7 @@ use crate::{
     input::Points,
     options::{CriteriaNames, Ends, Parameters, tolerances},
     report::{ShapeReport, Subject},
-    work::{GoOn, detached, interruptible},
+    work::{GoOn, interruptible, without_gil},
 };
 
 /// What every curve is made from.
@@ -56,14 +56,14 @@ impl CurveInput {
 }
 
 /// The options of the tension search, as the families take them.
-pub(crate) struct Searching {
+pub(crate) struct SearchArguments {
     pub(crate) criteria: CriteriaNames,
     pub(crate) strategy: Strategy,
     pub(crate) step: f64,
     pub(crate) max_iterations: Option<usize>,
 }
 
-impl Searching {
+impl SearchArguments {
     pub(crate) fn options(
         self,
         resolution: f64,
@@ -90,8 +90,8 @@ pub(crate) fn build<C: Member>(
     make: impl FnOnce(DataPolygon, &InputMap) -> Result<C, FitError> + Send,
 ) -> PyResult<SpaceCurve> {
     let (size, repeated) = (input.0.points.len(), input.0.repeated);
-    let made = detached(py, size, || {
-        input.make(|polygon, map| Ok(Made::built(make(polygon, &map)?, map, repeated)))
+    let made = without_gil(py, size, || {
+        input.make(|polygon, map| Ok(FitOutcome::built(make(polygon, &map)?, map, repeated)))
     });
     Ok(made.map_err(fit_error)?.curve)
 }
@@ -106,7 +106,7 @@ pub(crate) fn preserve<C: Member>(
     let (size, repeated) = (input.0.points.len(), input.0.repeated);
     let fit = |go_on: GoOn<'_>| {
         input.make(|polygon, map| {
-            Ok(Made::searched(search(polygon, go_on)?, request, map, repeated))
+            Ok(FitOutcome::searched(search(polygon, go_on)?, request, map, repeated))
         })
     };
     interruptible(py, size, fit)?.map_err(fit_error)?.into_python(py, request, None)
@@ -141,14 +141,14 @@ impl Request {
 
 /// A curve as Python is going to see it. It is made by the thread that fitted: what one processor has
 /// just written is dear to move by another.
-pub(crate) struct Made {
+pub(crate) struct FitOutcome {
     curve: SpaceCurve,
     /// What a search did that did not end well, and the report on its last curve.
-    unsolved: Option<Box<Unsolved>>,
+    unsolved: Option<Box<ConvergenceContext>>,
 }
 
 /// What is to be said of a search that did not end well.
-struct Unsolved {
+struct ConvergenceContext {
     iterations: usize,
     /// Whether more of them might help.
     limited: bool,
@@ -163,7 +163,7 @@ pub(crate) fn fit_fair(
     options: &FairOptions,
     request: &Request,
     go_on: GoOn<'_>,
-) -> Result<Made, FitError> {
+) -> Result<FitOutcome, FitError> {
     let fit = fair::FairSpline::fit_with(polygon, options, &mut |_| go_on());
     let fit = fit.map_err(|error| match error {
         fair::FitError::Input(error) => FitError::Input(error),
@@ -173,9 +173,9 @@ pub(crate) fn fit_fair(
     let iterations = diagnostics.iterations;
     let limited = options.max_iterations.is_some_and(|most| iterations >= most);
     let solved = diagnostics.status == fair::Status::Solved;
-    let unsolved = (!solved).then(|| Box::new(Unsolved { iterations, limited, report }));
+    let unsolved = (!solved).then(|| Box::new(ConvergenceContext { iterations, limited, report }));
     let work = Work::Fair(diagnostics, history);
-    Ok(Made::found(curve, work, request, map, repeated, unsolved))
+    Ok(FitOutcome::found(curve, work, request, map, repeated, unsolved))
 }
 
 /// The fair curve, or the exception that carries the last one.
@@ -201,7 +201,7 @@ pub(crate) fn preserve_fair(
     }
 }
 
-impl Made {
+impl FitOutcome {
     /// A curve that was searched for, and how.
     fn found(
         curve: impl Curve + 'static,
@@ -209,7 +209,7 @@ impl Made {
         request: &Request,
         map: InputMap,
         repeated: Repeated,
-        unsolved: Option<Box<Unsolved>>,
+        unsolved: Option<Box<ConvergenceContext>>,
     ) -> Self {
         let search = Search { work, asked: request.asked };
         let curve = Arc::new(Fitted::new(curve, map, repeated));
@@ -234,7 +234,8 @@ impl Made {
         let solved = diagnostics.status == Status::Solved;
         let limited = diagnostics.status == Status::IterationLimit;
         let iterations = diagnostics.iterations;
-        let unsolved = (!solved).then(|| Box::new(Unsolved { iterations, limited, report }));
+        let unsolved =
+            (!solved).then(|| Box::new(ConvergenceContext { iterations, limited, report }));
         let work = Work::Tension(diagnostics, history);
         Self::found(curve, work, request, map, repeated, unsolved)
     }
@@ -254,7 +255,7 @@ impl Made {
     }
 }
 
-impl Unsolved {
+impl ConvergenceContext {
     /// The exception that carries the curve.
     fn raise(
         self,

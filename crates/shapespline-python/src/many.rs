@@ -22,7 +22,7 @@ use shapespline::{
 
 use crate::{
     error::{curve_error, fit_error, input_error},
-    fit::{Made, Request, Searching, fit_fair},
+    fit::{FitOutcome, Request, SearchArguments, fit_fair},
     input::{Offsets, Points},
     options::{self, CriteriaNames, Ends, Method, Parameters},
     work::{GoOn, PARALLEL, interruptible, interruptible_each},
@@ -44,7 +44,7 @@ fn run<'py>(
     py: Python<'py>,
     rows: Rows,
     request: &Request,
-    make: impl Fn(DataPolygon, InputMap, GoOn<'_>) -> Result<Made, FitError> + Sync,
+    make: impl Fn(DataPolygon, InputMap, GoOn<'_>) -> Result<FitOutcome, FitError> + Sync,
 ) -> PyResult<(Bound<'py, PyTuple>, Bound<'py, PyDict>)> {
     let Rows { points, offsets, parametrization, boundary, closed, repeated, threads } = rows;
     // A line that every option suits: an error now is the options', not that of any curve.
@@ -60,11 +60,11 @@ fn run<'py>(
     let points = Ragged::new(&points, &offsets.0).map_err(input_error)?;
     let collection = Collection { points, dimension, parametrization, boundary, closed, repeated };
     let ranges = collection.check().map_err(input_error)?;
-    let fit = |k: usize, ask: GoOn<'_>| {
+    let fit = |k: usize, go_on: GoOn<'_>| {
         // Errors are large and rare.
         collection
-            .fit(k, &ranges, |polygon, map| match ask() {
-                ControlFlow::Continue(()) => make(polygon, map, ask).map(Some),
+            .fit(k, &ranges, |polygon, map| match go_on() {
+                ControlFlow::Continue(()) => make(polygon, map, go_on).map(Some),
                 ControlFlow::Break(()) => Ok(None),
             })
             .map_err(Box::new)
@@ -74,7 +74,7 @@ fn run<'py>(
     let fits = if threads.is_none() && 3 * longest < PARALLEL {
         interruptible_each(py, points.len(), fit)?
     } else {
-        let fit_all = |ask: GoOn<'_>| points.map(threads, |k, _| fit(k, ask));
+        let fit_all = |go_on: GoOn<'_>| points.map(threads, |k, _| fit(k, go_on));
         interruptible(py, usize::MAX, fit_all)?.map_err(input_error)?
     };
 
@@ -132,7 +132,7 @@ pub(crate) fn _fit_many<'py>(
     let parametrization = parameters.0;
     let rows = Rows { points, offsets, parametrization, boundary, closed, repeated, threads };
     let step = step.unwrap_or_else(|| method.default_step(strategy));
-    let search = Searching { criteria, strategy, step, max_iterations }.options(
+    let search = SearchArguments { criteria, strategy, step, max_iterations }.options(
         resolution,
         coplanarity,
         collinearity,
@@ -144,7 +144,7 @@ pub(crate) fn _fit_many<'py>(
         Method::Nu | Method::Tension => Request::from(&search),
     };
     match method {
-        Method::Fair => run(py, rows, &request, |polygon, map, ask| {
+        Method::Fair => run(py, rows, &request, |polygon, map, go_on| {
             let options = FairOptions {
                 criteria,
                 tolerances,
@@ -152,34 +152,34 @@ pub(crate) fn _fit_many<'py>(
                 max_iterations,
                 constraints: Constraints { straight, ..Constraints::default() },
             };
-            fit_fair(polygon, map, repeated, &options, &request, ask)
+            fit_fair(polygon, map, repeated, &options, &request, go_on)
         }),
-        Method::Nu => run(py, rows, &request, |polygon, map, ask| {
+        Method::Nu => run(py, rows, &request, |polygon, map, go_on| {
             if !shape_preserving {
                 return nu::NuSpline::new(polygon, Tension::Uniform(tension))
-                    .map(|curve| Made::built(curve, map, repeated));
+                    .map(|curve| FitOutcome::built(curve, map, repeated));
             }
-            nu::NuSpline::shape_preserving_with(polygon, &search, &mut |_| ask())
-                .map(|fit| Made::searched(fit, &request, map, repeated))
+            nu::NuSpline::shape_preserving_with(polygon, &search, &mut |_| go_on())
+                .map(|fit| FitOutcome::searched(fit, &request, map, repeated))
         }),
-        Method::Tension => run(py, rows, &request, |polygon, map, ask| {
+        Method::Tension => run(py, rows, &request, |polygon, map, go_on| {
             if !shape_preserving {
                 let scale = TangentScale::Uniform(tangent_scale);
                 return tension::TensionSpline::new(polygon, scale)
-                    .map(|curve| Made::built(curve, map, repeated));
+                    .map(|curve| FitOutcome::built(curve, map, repeated));
             }
-            tension::TensionSpline::shape_preserving_with(polygon, &search, &mut |_| ask())
-                .map(|fit| Made::searched(fit, &request, map, repeated))
+            tension::TensionSpline::shape_preserving_with(polygon, &search, &mut |_| go_on())
+                .map(|fit| FitOutcome::searched(fit, &request, map, repeated))
         }),
-        Method::CatmullRom => run(py, rows, &request, |polygon, map, ask| {
+        Method::CatmullRom => run(py, rows, &request, |polygon, map, go_on| {
             if !shape_preserving {
                 let tension = Tension::Uniform(tension);
                 return catmull_rom::CatmullRom::new(polygon, tension, continuity)
-                    .map(|curve| Made::built(curve, map, repeated));
+                    .map(|curve| FitOutcome::built(curve, map, repeated));
             }
             let options = HandleOptions { criteria, tolerances, safety, continuity, directions };
-            catmull_rom::CatmullRom::shape_preserving_with(polygon, &options, &mut |_| ask())
-                .map(|fit| Made::searched(fit, &request, map, repeated))
+            catmull_rom::CatmullRom::shape_preserving_with(polygon, &options, &mut |_| go_on())
+                .map(|fit| FitOutcome::searched(fit, &request, map, repeated))
         }),
     }
 }

@@ -10,7 +10,7 @@ use shapespline::{
 
 use crate::{
     curve::SpaceCurve,
-    fit::{CurveInput, Request, Searching, build, preserve},
+    fit::{CurveInput, Request, SearchArguments, build, preserve},
     input::Points,
     options::{self, CriteriaNames, Ends, NodalTension, Parameters},
 };
@@ -211,7 +211,7 @@ impl NuSpline {
         #[pyo3(from_py_with = options::max_iterations)] max_iterations: Option<usize>,
     ) -> PyResult<Py<PyAny>> {
         let input = CurveInput::new(points, parameters, boundary, closed, repeated)?;
-        let search = Searching { criteria, strategy, step, max_iterations }.options(
+        let search = SearchArguments { criteria, strategy, step, max_iterations }.options(
             resolution,
             coplanarity,
             collinearity,

@@ -23,7 +23,7 @@ use crate::{
     piecewise::PiecewiseBezier,
     report::{ShapeRecord, ShapeReport, Subject},
     tangents::Tangents,
-    work::detached,
+    work::without_gil,
 };
 
 /// Raised whenever the layout changes; bytes of other versions are refused, not guessed at.
@@ -94,7 +94,7 @@ pub(crate) fn reduce<'py>(
         bytes.extend_from_slice(&checksum.to_le_bytes());
         Ok(bytes)
     };
-    let bytes = detached(py, 0, sealed).map_err(|error: postcard::Error| {
+    let bytes = without_gil(py, 0, sealed).map_err(|error: postcard::Error| {
         refused(format!("the object cannot be pickled: {error}"))
     })?;
     Ok((make, (PyBytes::new(py, &bytes),)))
@@ -145,24 +145,24 @@ fn whole<T: DeserializeOwned>(mut bytes: &[u8]) -> PyResult<T> {
 /// Makes the object of a pickle.
 #[pyfunction]
 pub(crate) fn _from_bytes<'py>(py: Python<'py>, data: &[u8]) -> PyResult<Bound<'py, PyAny>> {
-    let (kind, mut bytes) = detached(py, 0, || opened(data))?;
+    let (kind, mut bytes) = without_gil(py, 0, || opened(data))?;
     let size = bytes.len();
     match kind {
         Kind::Curve => {
-            let (curve, search) = detached(py, size, || read_curve(&mut bytes))?;
+            let (curve, search) = without_gil(py, size, || read_curve(&mut bytes))?;
             Ok(SpaceCurve::of(curve, search).into_python(py)?.into_bound(py))
         }
         Kind::Report => {
-            let subject = detached(py, size, || read_subject(&mut bytes))?;
+            let subject = without_gil(py, size, || read_subject(&mut bytes))?;
             let (report, asked) = whole(bytes)?;
             ShapeReport::of(report, subject, asked).into_bound_py_any(py)
         }
         Kind::PiecewiseBezier => {
-            let curve = detached(py, size, || assemble(whole(bytes)?))?;
+            let curve = without_gil(py, size, || assemble(whole(bytes)?))?;
             PiecewiseBezier::of(curve).into_bound_py_any(py)
         }
         Kind::Function => {
-            let (layout, fits): (Layout, Fits) = detached(py, size, || whole(bytes))?;
+            let (layout, fits): (Layout, Fits) = without_gil(py, size, || whole(bytes))?;
             if !(fits.is_sound() && fits.agree() && layout.is_of(fits.len())) {
                 return Err(damaged("lengths do not agree"));
             }
@@ -170,7 +170,7 @@ pub(crate) fn _from_bytes<'py>(py: Python<'py>, data: &[u8]) -> PyResult<Bound<'
             Ok(function.into_python(py)?.into_bound(py))
         }
         Kind::Rows => {
-            let (ragged, fits): (bool, Fits) = detached(py, size, || whole(bytes))?;
+            let (ragged, fits): (bool, Fits) = without_gil(py, size, || whole(bytes))?;
             if !(fits.is_sound() && (ragged || fits.agree())) {
                 return Err(damaged("lengths do not agree"));
             }

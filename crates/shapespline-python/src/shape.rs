@@ -27,7 +27,7 @@ use crate::{
     output::{vector, vectors},
     piecewise::PiecewiseBezier,
     report::{ShapeReport, Subject},
-    work::{detached, interruptible},
+    work::{interruptible, without_gil},
 };
 
 /// Directions of the curve at its two ends that differ by a smaller sine close it smoothly.
@@ -94,7 +94,7 @@ pub(crate) fn _check_shape(
         };
         polygon(kept.points.clone(), boundary)
     };
-    let polygon = detached(py, count, make).map_err(|error| input_error(map.in_input(error)))?;
+    let polygon = without_gil(py, count, make).map_err(|error| input_error(map.in_input(error)))?;
     let special = special.at_nodes(&polygon, &map).and_then(|special| {
         special.validate(&polygon)?;
         Ok(special)
@@ -198,7 +198,7 @@ pub(crate) fn _polygon_inflections<'py>(
 ) -> PyResult<Counted<'py>> {
     let Points { points, dimension } = points;
     let count = match direction {
-        Some(direction) => detached(py, points.len(), || {
+        Some(direction) => without_gil(py, points.len(), || {
             polygon_inflections_from(&points, dimension, direction).map(Some)
         }),
         None => {
@@ -217,7 +217,7 @@ pub(crate) fn _curve_inflections<'py>(
     let curve = &curve.get().curve;
     let count = match direction {
         Some(direction) => {
-            detached(py, curve.pieces(), || curve_inflections_from(curve, direction).map(Some))
+            without_gil(py, curve.pieces(), || curve_inflections_from(curve, direction).map(Some))
         }
         None => interruptible(py, ALL, |go_on| Ok(curve_inflections_with(curve, go_on)))?,
     };
@@ -248,7 +248,7 @@ pub(crate) fn _polygon_shape<'py>(
     let tolerances = Tolerances { zero: tolerance, resolution, ..Tolerances::default() };
     let tolerances = tolerances.validate().map_err(input_error)?;
     let dimension = input.dimension;
-    let made = detached(py, input.points.len(), || {
+    let made = without_gil(py, input.points.len(), || {
         let (polygon, map) = input.polygon()?;
         Ok((polygon_shape(&polygon, &tolerances), polygon, map))
     });

@@ -16,7 +16,7 @@ use shapespline::{
 use crate::{
     curve::SpaceCurve,
     error::must,
-    fit::{CurveInput, Request, Searching, build, preserve},
+    fit::{CurveInput, Request, SearchArguments, build, preserve},
     input::{Numbers, Points, Query, array, numbers},
     options::{self, CriteriaNames, Ends, Method, Parameters},
 };
@@ -310,7 +310,7 @@ impl TensionSpline {
     ) -> PyResult<Py<PyAny>> {
         let input = CurveInput::new(points, parameters, boundary, closed, repeated)?;
         let step = step.unwrap_or_else(|| Method::Tension.default_step(strategy));
-        let search = Searching { criteria, strategy, step, max_iterations }.options(
+        let search = SearchArguments { criteria, strategy, step, max_iterations }.options(
             resolution,
             coplanarity,
             collinearity,

@@ -22,7 +22,7 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 pub(crate) const PARALLEL: usize = 8192;
 
 /// How often a long search asks whether Ctrl-C was pressed.
-const PATIENCE: Duration = Duration::from_millis(50);
+const SIGNAL_POLL_INTERVAL: Duration = Duration::from_millis(50);
 
 /// Threads, and the process that has them.
 struct Pool {
@@ -57,17 +57,21 @@ fn pool() -> Option<Arc<Pool>> {
 /// memory): outside any pool the crates below would ask for rayon's global one, which panics there.
 fn without_threads<T: Send>(work: impl FnOnce() -> T + Send) -> T {
     thread_local! {
-        static ALONE: OnceCell<Option<ThreadPool>> = const { OnceCell::new() };
+        static INLINE: OnceCell<Option<ThreadPool>> = const { OnceCell::new() };
     }
     let one = || ThreadPoolBuilder::new().num_threads(1).use_current_thread().build().ok();
-    ALONE.with(|pool| match pool.get_or_init(one) {
+    INLINE.with(|pool| match pool.get_or_init(one) {
         Some(pool) => pool.install(work),
         None => work(),
     })
 }
 
 /// Runs work on `size` items while other Python threads go on.
-pub(crate) fn detached<T: Send>(py: Python<'_>, size: usize, work: impl FnOnce() -> T + Send) -> T {
+pub(crate) fn without_gil<T: Send>(
+    py: Python<'_>,
+    size: usize,
+    work: impl FnOnce() -> T + Send,
+) -> T {
     if size < PARALLEL {
         return py.detach(work);
     }
@@ -93,11 +97,11 @@ pub(crate) fn interruptible<T: Send>(
 ) -> PyResult<T> {
     let done = py.detach(|| {
         if size < PARALLEL {
-            return alone(work);
+            return inline(work);
         }
         match pool() {
-            Some(pool) => watched(&pool.threads, work),
-            None => without_threads(|| alone(work)),
+            Some(pool) => interruptible_in_pool(&pool.threads, work),
+            None => without_threads(|| inline(work)),
         }
     });
     // What came in while the last step ran.
@@ -121,7 +125,7 @@ pub(crate) fn in_parts<E: Send>(
     of: impl Fn(Range<usize>) -> Result<Vec<f64>, E> + Send + Sync,
 ) -> PyResult<Result<Vec<f64>, E>> {
     if size <= PART {
-        return Ok(detached(py, size, || of(0..size)));
+        return Ok(without_gil(py, size, || of(0..size)));
     }
     interruptible(py, size, |go_on| {
         let mut all = Vec::with_capacity(size);
@@ -138,32 +142,35 @@ pub(crate) fn parts(size: usize) -> impl Iterator<Item = Range<usize>> {
 }
 
 /// The work runs on this thread, and asks for signals itself.
-fn alone<T>(work: impl FnOnce(GoOn<'_>) -> T) -> PyResult<T> {
-    let signals = Mutex::new(Signals { asked: Instant::now(), interrupt: None });
-    let ask = || signals.lock().unwrap_or_else(PoisonError::into_inner).ask();
-    let result = work(&ask);
+fn inline<T>(work: impl FnOnce(GoOn<'_>) -> T) -> PyResult<T> {
+    let signals = Mutex::new(Signals { polled: Instant::now(), interrupt: None });
+    let poll = || signals.lock().unwrap_or_else(PoisonError::into_inner).poll();
+    let result = work(&poll);
     let signals = signals.into_inner().unwrap_or_else(PoisonError::into_inner);
     signals.interrupt.map_or(Ok(result), Err)
 }
 
 /// Signals that a thread asks for now and then.
 struct Signals {
-    asked: Instant,
+    polled: Instant,
     interrupt: Option<PyErr>,
 }
 
 impl Signals {
-    fn ask(&mut self) -> ControlFlow<()> {
-        if self.interrupt.is_none() && self.asked.elapsed() >= PATIENCE {
+    fn poll(&mut self) -> ControlFlow<()> {
+        if self.interrupt.is_none() && self.polled.elapsed() >= SIGNAL_POLL_INTERVAL {
             self.interrupt = Python::attach(|py| py.check_signals()).err();
-            self.asked = Instant::now();
+            self.polled = Instant::now();
         }
         if self.interrupt.is_some() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     }
 }
 
 /// The work runs in the pool; this thread, which may be the one that signals reach, watches.
-fn watched<T: Send>(pool: &ThreadPool, work: impl FnOnce(GoOn<'_>) -> T + Send) -> PyResult<T> {
+fn interruptible_in_pool<T: Send>(
+    pool: &ThreadPool,
+    work: impl FnOnce(GoOn<'_>) -> T + Send,
+) -> PyResult<T> {
     let stop = AtomicBool::new(false);
     let (sender, receiver) = mpsc::channel();
     let mut interrupt = None;
@@ -174,7 +181,7 @@ fn watched<T: Send>(pool: &ThreadPool, work: impl FnOnce(GoOn<'_>) -> T + Send) 
             // The watcher may have gone: then nobody waits for this.
             let _ = sender.send(());
         });
-        while receiver.recv_timeout(PATIENCE) == Err(mpsc::RecvTimeoutError::Timeout) {
+        while receiver.recv_timeout(SIGNAL_POLL_INTERVAL) == Err(mpsc::RecvTimeoutError::Timeout) {
             if let Err(error) = Python::attach(|py| py.check_signals()) {
                 stop.store(true, Ordering::Relaxed);
                 interrupt = Some(error);
@@ -198,27 +205,27 @@ pub(crate) fn interruptible_each<T: Send>(
     search: impl Fn(usize, GoOn<'_>) -> T + Sync,
 ) -> PyResult<Vec<T>> {
     let (stop, next) = (AtomicBool::new(false), AtomicUsize::new(0));
-    let take = |ask: GoOn<'_>| {
+    let take = |go_on: GoOn<'_>| {
         let mut done = Vec::new();
-        while ask().is_continue() {
+        while go_on().is_continue() {
             let k = next.fetch_add(1, Ordering::Relaxed);
             if k >= count {
                 break;
             }
-            done.push((k, search(k, ask)));
+            done.push((k, search(k, go_on)));
         }
         done
     };
-    let signals = Mutex::new(Signals { asked: Instant::now(), interrupt: None });
-    let ask_here = || {
-        let answer = signals.lock().unwrap_or_else(PoisonError::into_inner).ask();
+    let signals = Mutex::new(Signals { polled: Instant::now(), interrupt: None });
+    let poll_here = || {
+        let answer = signals.lock().unwrap_or_else(PoisonError::into_inner).poll();
         if answer.is_break() {
             stop.store(true, Ordering::Relaxed);
         }
         answer
     };
     let all = py.detach(|| {
-        let Some(pool) = pool() else { return take(&ask_here) };
+        let Some(pool) = pool() else { return take(&poll_here) };
         let others = Mutex::new(Vec::new());
         let (sender, receiver) = mpsc::channel::<()>();
         let mut all = pool.threads.in_place_scope(|scope| {
@@ -232,10 +239,12 @@ pub(crate) fn interruptible_each<T: Send>(
                 });
             }
             drop(sender);
-            let done = take(&ask_here);
+            let done = take(&poll_here);
             // The others may each have one long search left: signals are asked for until all are done.
-            while receiver.recv_timeout(PATIENCE) == Err(mpsc::RecvTimeoutError::Timeout) {
-                if ask_here().is_break() {
+            while receiver.recv_timeout(SIGNAL_POLL_INTERVAL)
+                == Err(mpsc::RecvTimeoutError::Timeout)
+            {
+                if poll_here().is_break() {
                     break;
                 }
             }

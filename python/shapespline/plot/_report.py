@@ -22,12 +22,12 @@ NUMBERED = 24
 
 
 def criteria(report: ShapeReport, *, ax: Axes | None = None, numbers: bool | None = None) -> Axes:
-    """Draw a map of the segments: which criteria each calls for, and by what margin it meets them.
+    """Draw a map of the segments: which criteria each requires, and by what margin it meets them.
 
-    A row for each criterion, a column for each segment. Empty: the points do not call for the
+    A row for each criterion, a column for each segment. Empty: the points do not require the
     criterion there. Blue: satisfied, the darker the larger the margin. Red with a cross: violated,
     the darker the more negative the margin. Amber: undecided. What stands beside a row is how many
-    of the segments that call for its criterion violate it, and the worst of their margins.
+    of the segments that require its criterion violate it, and the worst of their margins.
 
     Parameters
     ----------

@@ -20,7 +20,7 @@ use crate::{
     output::{FloatArray, vectors},
     report::{ShapeReport, Subject},
     tangents::Tangents,
-    work::detached,
+    work::without_gil,
 };
 
 /// The name of a boundary that has one.
@@ -163,7 +163,7 @@ impl SpaceCurve {
                     return Ok(None);
                 };
                 let of = || FairDiagnostics::of(found, &self.curve.map, curve);
-                detached(py, 0, of).into_py_any(py)
+                without_gil(py, 0, of).into_py_any(py)
             }
         }
         .map(Some)
@@ -214,7 +214,8 @@ impl SpaceCurve {
             let polygon = self.curve.polygon()?;
             Ok((0..polygon.segments()).map(|i| polygon.discrete_torsion(i)).collect())
         };
-        let torsion = detached(py, self.curve.cubic().segments(), of_all).map_err(input_error)?;
+        let torsion =
+            without_gil(py, self.curve.cubic().segments(), of_all).map_err(input_error)?;
         Ok(PyArray1::from_vec(py, torsion))
     }
 

@@ -14,7 +14,7 @@ use shapespline::monotone::{
 
 use crate::{
     output::{room, zeros},
-    work::{GoOn, PARALLEL, detached, in_parts, interruptible, parts},
+    work::{GoOn, PARALLEL, in_parts, interruptible, parts, without_gil},
 };
 
 /// Columns of one kind; at least one.
@@ -195,7 +195,7 @@ impl Fits {
         work: impl Fn(usize, Column<'_>) -> T + Send + Sync,
     ) -> Vec<T> {
         let size = self.size();
-        detached(py, size, || {
+        without_gil(py, size, || {
             let one = |k| work(k, self.column(k));
             if size < PARALLEL || self.len() == 1 {
                 (0..self.len()).map(one).collect()
