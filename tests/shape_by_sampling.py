@@ -77,7 +77,7 @@ def norm(a: Array) -> Array:
 def data_polygon(
     points: npt.ArrayLike, parameters: npt.ArrayLike, boundary: Boundary, tolerance: float = 1e-9
 ) -> Polygon:
-    """Return chords, binormals and discrete torsion, with the stand-ins that the ends call for."""
+    """Return chords, binormals and discrete torsion, with the stand-ins that the ends require."""
     points = in_space(points)
     spacing = np.diff(np.asarray(parameters, dtype=float))
     chords = np.diff(points, axis=0)
@@ -116,7 +116,7 @@ def data_polygon(
 def applicable(
     polygon: Polygon, coplanarity: float, tolerance: float
 ) -> dict[str, npt.NDArray[np.bool_]]:
-    """Return which criterion each segment calls for.
+    """Return which criterion each segment requires.
 
     Coplanarity is asked only of data that are not planar as a whole (5.34)–(5.37), and only where
     a plane is known: both turns must exceed the square root of the tolerance (next to a straight

@@ -46,7 +46,7 @@ def test_an_arc_keeps_convexity_and_its_mirror_image_does_not():
     points = np.stack([np.sin(u), -np.cos(u)], axis=-1)
     assert shape_by_sampling(points, u, None, arc).violations == []
     mirrored = shape_by_sampling(points, u, None, lambda u, n, side: arc(u, n, side, -1.0))
-    # Zero curvature: the end segments call for nothing but at their inner ends.
+    # Zero curvature: the end segments require nothing but at their inner ends.
     convexity = [("convexity", i) for i in range(1, 7)]
     assert mirrored.violations == convexity + [("turning", i) for i in range(8)]
 

@@ -130,7 +130,7 @@ def test_a_plane_that_only_an_end_tangent_leaves(curve_class, end):
 
 @every_family
 def test_exact_reversal_on_a_line(curve_class):
-    """A turn by 180° calls for nothing: the plain cubic must be returned, with zero tension."""
+    """A turn by 180° requires nothing: the plain cubic must be returned, with zero tension."""
     points = np.array([[0.0, 0, 0], [2, 0, 0], [1, 0, 0], [4, 0, 0]])
     curve = cases.preserving(curve_class)(points)
     np.testing.assert_array_equal(cases.tension_of(curve), 0.0)

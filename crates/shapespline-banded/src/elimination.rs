@@ -3,10 +3,11 @@
 //! Elimination and back substitution of a whole open system, on all threads where it is long.
 //!
 //! What a row inherits from the rows before it dies away geometrically, and in floating point
-//! altogether (see [`crate::UpdatableSolver`]). So each part of a long system begins some rows early with
-//! nothing inherited, and has met the true numbers, bit for bit, when it comes to its own rows. That
-//! is verified: where a part began with other numbers than the one before it ended with, it is done
-//! again until the two meet. The result is that of one run from end to end, for any number of threads.
+//! altogether (see [`crate::UpdatableSolver`]). So each part of a long system begins some rows
+//! early with nothing inherited, and has met the true numbers, bit for bit, when it comes to its
+//! own rows. That is verified: where a part began with other numbers than the one before it ended
+//! with, it is done again until the two meet. The result is that of one run from end to end, for
+//! any number of threads.
 
 use glam::DVec3;
 use rayon::prelude::*;

@@ -5,10 +5,13 @@
 //!
 //! All solvers are O(n) and without pivoting (the systems of interpolating splines are strictly
 //! diagonally dominant or positive definite): [`solve_tridiagonal`] and [`solve_cyclic`] work in place
-//! on arrays, [`UpdatableSolver`] keeps what it needs to solve again only where rows changed, a [`LocalSystem`] of
-//! it solves a few rows with other coefficients, [`block_tridiagonal`] takes 2×2 blocks,
-//! [`BlockCholesky`] blocks of any size, open or cyclic, and [`box_qp`] minimises a quadratic form between
-//! bounds.
+//! on arrays, [`UpdatableSolver`] keeps what it needs to solve again only where rows changed, a
+//! [`LocalSystem`] of it solves a few rows with other coefficients, [`block_tridiagonal`] takes 2×2
+//! blocks, [`BlockCholesky`] blocks of any size, open or cyclic, and [`box_qp`] minimises a
+//! quadratic form between bounds.
+//!
+//! Symbols and terms:
+//! [notation](https://github.com/shapespline/shapespline/blob/main/python/docs/notation.md).
 //!
 //! ```
 //! use shapespline_banded::{DVec3, solve_tridiagonal};

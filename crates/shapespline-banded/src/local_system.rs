@@ -15,8 +15,8 @@ use crate::{
 /// nothing else changes.
 ///
 /// The rows before them are eliminated as they are stored, those after them from the other end as far
-/// as they are felt: a solve then costs these rows and no others, where [`UpdatableSolver::update`] goes on
-/// until its changes have died away. Solutions are those of a full solve up to rounding.
+/// as they are felt: a solve then costs these rows and no others, where [`UpdatableSolver::update`]
+/// goes on until its changes have died away. Solutions are those of a full solve up to rounding.
 #[derive(Debug, Clone, Default)]
 pub struct LocalSystem {
     rows: Vec<Row>,
@@ -71,7 +71,8 @@ impl LocalSystem {
         self.first..self.first + self.rows.len()
     }
 
-    /// A row of this local system, to be made another one. It stays that until the next [`LocalSystem::reset`].
+    /// A row of this local system, to be made another one. It stays that until the next
+    /// [`LocalSystem::reset`].
     pub fn row_mut(&mut self, i: usize) -> &mut Row {
         &mut self.rows[i - self.first]
     }
@@ -121,7 +122,8 @@ mod tests {
         Array { rows, cyclic }
     }
 
-    /// At both ends, inside, whole systems, and again after the rows of the local system have become others.
+    /// At both ends, inside, whole systems, and again after the rows of the local system have
+    /// become others.
     #[test]
     fn a_local_system_is_solved_as_the_whole_system_is() {
         for (n, cyclic, first, count) in [

@@ -239,7 +239,8 @@ impl UpdatableSolver {
     }
 }
 
-/// Solves a system that will not change: the same numbers as [`UpdatableSolver::new`], with half its memory.
+/// Solves a system that will not change: the same numbers as [`UpdatableSolver::new`], with half
+/// its memory.
 ///
 /// # Errors
 /// A pivot that is zero or not finite.

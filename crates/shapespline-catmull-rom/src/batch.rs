@@ -2,8 +2,8 @@
 
 //! The largest handles of one batch of a polygon after another, with their check.
 //!
-//! The loops work on several segments at once (see [`SegmentBatch`]); what is rare, lines and ends, comes
-//! after them.
+//! The loops work on several segments at once (see [`SegmentBatch`]); what is rare, lines and ends,
+//! comes after them.
 
 use std::ops::Range;
 
@@ -76,8 +76,8 @@ impl HandleScan {
 }
 
 impl BatchHandles {
-    /// The handles of some segments, at most [`SegmentBatch::OWN`], into `legs`; the smaller factor at the
-    /// first node of each into `factors`. Returns that at the last node.
+    /// The handles of some segments, at most [`SegmentBatch::OWN`], into `legs`; the smaller factor
+    /// at the first node of each into `factors`. Returns that at the last node.
     ///
     /// `tangents`: one per point, or those of the parametrisation.
     pub(crate) fn make(
@@ -140,8 +140,8 @@ impl BatchHandles {
         }
     }
 
-    /// The largest factors, up to one, that stay below `safety` times the bounds which the requirements of the
-    /// polygon put on them.
+    /// The largest factors, up to one, that stay below `safety` times the bounds which the
+    /// requirements of the polygon put on them.
     fn limit(&mut self, polygon: &DataPolygon, options: &HandleOptions) {
         let Self { batch, required, first, last, at_start, at_end, .. } = self;
         let (chords, binormals) = (batch.chords(), batch.binormals());

@@ -46,6 +46,9 @@
 //! Source: R. S. Gautam, *Shape preservation behavior of spline curves* ("paper 002"), section 14; the
 //! magnitudes are ours.
 //!
+//! Symbols and terms:
+//! [notation](https://github.com/shapespline/shapespline/blob/main/python/docs/notation.md).
+//!
 //! ```
 //! use shapespline_catmull_rom::{CatmullRom, HandleOptions, Interpolant};
 //! use shapespline_catmull_rom::geometry::{Boundary, DVec3, DataPolygon, Parametrization};

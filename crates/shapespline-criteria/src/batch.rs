@@ -256,8 +256,8 @@ mod tests {
         }
     }
 
-    /// A binormal at a right angle, to the last bit, to the one that it has to oppose is a violation here as
-    /// well: no doubt may be lost because a product is zero and not positive.
+    /// A binormal at a right angle, to the last bit, to the one that it has to oppose is a
+    /// violation here as well: no doubt may be lost because a product is zero and not positive.
     #[test]
     fn a_product_of_zero_is_a_violation() {
         // Binormal vectors along (0, 0, 1) and (0, 1, −1): the second segment inflects.

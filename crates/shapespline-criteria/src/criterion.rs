@@ -86,7 +86,8 @@ impl Criteria {
     /// The default of a check: all but global convexity, which asks more of a curve than the papers'
     /// algorithms promise.
     pub const DEFAULT: Self = Self::ALL.without(Criterion::GlobalConvexity);
-    /// The default of a fit: as [`Criteria::DEFAULT`], but where the points double back the curve may stop.
+    /// The default of a fit: as [`Criteria::DEFAULT`], but where the points double back the curve
+    /// may stop.
     pub const OF_FITS: Self = Self::DEFAULT.without(Criterion::Regular);
     /// Every criterion there is.
     pub const ALL: Self = Self(0b1111_1111);

@@ -31,6 +31,9 @@
 //! curves*, Definitions 3.1, 3.16, 5.4, 6.2, 8.2, 9.2, 10.1 and sections 12 and 13; T. N. T. Goodman,
 //! Computer Aided Geometric Design 8 (1991) 37–50, for inflection counts.
 //!
+//! Symbols and terms:
+//! [notation](https://github.com/shapespline/shapespline/blob/main/python/docs/notation.md).
+//!
 //! ```
 //! use shapespline_criteria::geometry::{Boundary, DVec3, DataPolygon, Parametrization};
 //! use shapespline_criteria::{Criteria, Criterion, Tolerances, check};

@@ -17,8 +17,9 @@ const BLOCK: usize = 4096;
 /// The first segments that are asked whether the polygon is planar: most that are not say so at once.
 const FIRST: usize = 4;
 
-/// The bits of [`Requirements`] that say how the binormal vectors of a pair of nodes lie to each other; those of
-/// the pair before and after the segment's own stand two and four places further on.
+/// The bits of [`Requirements`] that say how the binormal vectors of a pair of nodes lie to each
+/// other; those of the pair before and after the segment's own stand two and four places further
+/// on.
 const ALIKE: u32 = 1 << 11;
 const APART: u32 = 1 << 12;
 const BEFORE: u32 = 2;
@@ -143,9 +144,9 @@ impl Requirements {
         }
     }
 
-    /// The requirements that imply a regular curve where they are met. A cubic that stops where its legs are
-    /// independent has none of them; else `ω` has a double root there, so along no vector is it positive
-    /// throughout, or does it change its sign once.
+    /// The requirements that imply a regular curve where they are met. A cubic that stops where its
+    /// legs are independent has none of them; else `ω` has a double root there, so along no vector
+    /// is it positive throughout, or does it change its sign once.
     pub(crate) const IMPLY_REGULAR: Self =
         Self::CONVEXITY.and(Self::INFLECTION).and(Self::RIGHT_TORSION).and(Self::LEFT_TORSION);
 

@@ -17,7 +17,8 @@ use shapespline_geometry::{DataPolygon, Dimension, SegmentBatch};
 
 use crate::{Criterion, Requirements};
 
-/// Takes from the requirements of a batch what a resolution cannot know. Places as in [`Requirements::of_batch`].
+/// Takes from the requirements of a batch what a resolution cannot know. Places as in
+/// [`Requirements::of_batch`].
 pub(crate) fn leave_known(
     polygon: &DataPolygon,
     batch: &SegmentBatch,

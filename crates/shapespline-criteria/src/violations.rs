@@ -253,8 +253,8 @@ impl Cones {
 /// Collinearity is asked on this part of a segment next to the node.
 pub(crate) const LINE_PART: f64 = 0.5;
 
-/// The requirements that are not met beyond doubt: none, and there is no violation. A few signs without branches, within
-/// coarse bounds; where those are not enough nothing is decided.
+/// The requirements that are not met beyond doubt: none, and there is no violation. A few signs
+/// without branches, within coarse bounds; where those are not enough nothing is decided.
 #[inline(always)]
 pub(crate) fn unproved(s: &SegmentGeometry, bounds: Coarse, required: u32) -> u32 {
     let ([a0, g0, b0], [a1, g1, b1]) = (s.omega_along(s.p), s.omega_along(s.q));
@@ -282,7 +282,8 @@ pub(crate) fn unproved(s: &SegmentGeometry, bounds: Coarse, required: u32) -> u3
     required & !met
 }
 
-/// What fails on a segment; doubts are counted as `lean` says. The cones are made where a requirement needs them.
+/// What fails on a segment; doubts are counted as `lean` says. The cones are made where a
+/// requirement needs them.
 #[inline]
 pub(crate) fn violations(
     s: &SegmentGeometry,

@@ -30,6 +30,9 @@
 //! Conn, N. Gould, A. Sartenaer, P. L. Toint, SIAM J. Optim. 6 (1996) 674–703 (step lengths that are local);
 //! the element, its criteria and the start in closed form are derived in the modules that hold them.
 //!
+//! Symbols and terms:
+//! [notation](https://github.com/shapespline/shapespline/blob/main/python/docs/notation.md).
+//!
 //! ```
 //! use shapespline_fair::{FairOptions, FairSpline, Status};
 //! use shapespline_fair::geometry::{Boundary, DVec3, DataPolygon, Parametrization};

@@ -16,6 +16,9 @@
 //! ν-splines*, Numerical Algorithms 23 (2000); R. S. Gautam, *Shape preservation behavior of
 //! spline curves*.
 //!
+//! Symbols and terms:
+//! [notation](https://github.com/shapespline/shapespline/blob/main/python/docs/notation.md).
+//!
 //! ```
 //! use shapespline_geometry::{Boundary, DVec3, DataPolygon, Parametrization, PiecewiseCubic, Side};
 //!

@@ -133,8 +133,8 @@ impl PiecewiseCubic {
         Ok(Self::through_checked(polygon, legs))
     }
 
-    /// [`Self::through`] for legs that [have room](crate::VectorLanes::have_room), as was found while they
-    /// were made: long ones are not read from memory once more.
+    /// [`Self::through`] for legs that [have room](crate::VectorLanes::have_room), as was found
+    /// while they were made: long ones are not read from memory once more.
     #[must_use]
     pub fn through_checked(polygon: DataPolygon, legs: Vec<[DVec3; 2]>) -> Self {
         debug_assert!(check_legs(&legs).is_ok());

@@ -211,7 +211,8 @@ impl SegmentBatch {
         (self.start + place + Self::BESIDE * (n - 1)) % n
     }
 
-    /// Whether all chords are of a size at which [`normalized_scale`](crate::normalized_scale) leaves them as they are.
+    /// Whether all chords are of a size at which [`normalized_scale`](crate::normalized_scale)
+    /// leaves them as they are.
     #[must_use]
     pub fn is_ordinary(&self) -> bool {
         self.ordinary

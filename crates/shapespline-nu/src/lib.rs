@@ -17,6 +17,9 @@
 //! Numerical Algorithms 23 (2000) 217–250 ("paper 001"), section 3 with erratum E2, section 5.2 with
 //! E3–E5; G. M. Nielson, *Some piecewise polynomial alternatives to splines under tension*, 1974.
 //!
+//! Symbols and terms:
+//! [notation](https://github.com/shapespline/shapespline/blob/main/python/docs/notation.md).
+//!
 //! ```
 //! use shapespline_nu::geometry::{Boundary, DVec3, DataPolygon, Parametrization};
 //! use shapespline_nu::{Interpolant, NuSpline, SearchOptions};

@@ -86,16 +86,16 @@ pub trait TensionFamily: Sync {
     fn end_legs(&self, segment: usize) -> [DVec3; 2];
 
     /// Tension in units in which equal pulls at the two nodes of an inflecting coplanar segment put
-    /// its inflection where [`shapespline_criteria::inflection_parameter`] says, in the limit: there the rule
-    /// (5.65) of paper 001 keeps `tension / unit` equal. One for ν-splines, for which (5.9) was
-    /// derived.
+    /// its inflection where [`shapespline_criteria::inflection_parameter`] says, in the limit:
+    /// there the rule (5.65) of paper 001 keeps `tension / unit` equal. One for ν-splines, for
+    /// which (5.9) was derived.
     fn tension_unit(&self, _node: usize) -> f64 {
         1.0
     }
 }
 
-/// [`TensionFamily::tension_unit`] of a family whose tangents are, in the limit, `1/(1 + tension)` times the
-/// velocity `w L_{i−1}/h_{i−1} + (1−w) L_i/h_i`, `w = h_i/(h_{i−1} + h_i)`.
+/// [`TensionFamily::tension_unit`] of a family whose tangents are, in the limit, `1/(1 + tension)`
+/// times the velocity `w L_{i−1}/h_{i−1} + (1−w) L_i/h_i`, `w = h_i/(h_{i−1} + h_i)`.
 ///
 /// Those of the ν-spline are `6/(ν_i √(w(1−w)))` times it, and at an end with a given tangent `1/ν`
 /// times that: the legs agree where `1 + tension` is this unit times a common `ν/12`.

@@ -2,9 +2,9 @@
 
 //! Fewer criteria never make a curve that bends more.
 //!
-//! Tension that only a further criterion would have required can leave the curve fairer than less tension
-//! elsewhere. So where a search for fewer criteria than usual had to raise any, the curve that keeps all
-//! of them is found as well, and of the two the one that bends less is kept.
+//! Tension that only a further criterion would have required can leave the curve fairer than less
+//! tension elsewhere. So where a search for fewer criteria than usual had to raise any, the curve
+//! that keeps all of them is found as well, and of the two the one that bends less is kept.
 
 use shapespline_criteria::Criteria;
 use shapespline_geometry::{Curve, DataPolygon, PiecewiseBezier, fairness};

@@ -11,9 +11,10 @@
 //! criteria allow, for growth overshoots.
 //!
 //! **Guarantee.** A search that ends with [`Status::Solved`] ends with a complete solve and a complete
-//! check that found no violation. Convergence rests on the asymptotic theorems of the family (paper 001,
-//! Lemmas 5.4–5.9; paper 000, Lemmas 4.1–4.3). A search ends without a solution where a segment fails
-//! though no tension around it can rise any further ([`Status::Stalled`]), and at the caller's limit.
+//! check that found no violation. Convergence rests on the asymptotic theorems of the family (paper
+//! 001, Lemmas 5.4–5.9; paper 000, Lemmas 4.1–4.3). A search ends without a solution where a
+//! segment fails though no tension around it can rise any further ([`Status::Stalled`]), and at the
+//! caller's limit.
 //!
 //! **Cost.** One full solve and check first and last; between them the cost follows the number of
 //! violations, not the length of the curve. Where a violation travels through regular data, a segment a
@@ -22,6 +23,9 @@
 //!
 //! Source: M. I. Karavelas, P. D. Kaklis, Numerical Algorithms 23 (2000), section 5.2 (algorithm
 //! NUSSP), with errata E4 and E5.
+//!
+//! Symbols and terms:
+//! [notation](https://github.com/shapespline/shapespline/blob/main/python/docs/notation.md).
 
 mod bending;
 mod doubts;

@@ -17,11 +17,12 @@ pub struct TensionPattern {
 impl TensionPattern {
     /// The pattern that mends the violations of a segment.
     ///
-    /// A violation between the nodes, of global convexity, of torsion, or of a split coplanarity needs all
-    /// four nodes; one at node m needs its neighbours m−1 and m+1 (Lemma 5.4), one at node m+1 needs m and m+2; the
-    /// inflection conditions are conditions at the nodes, and so is turning (paper 000, Lemma 4.2). A violation
-    /// of collinearity away from its node needs the two nodes of that segment, or all three nodes around
-    /// (Lemma 5.9). A segment on which the curve stops needs shorter legs: its two nodes.
+    /// A violation between the nodes, of global convexity, of torsion, or of a split coplanarity
+    /// needs all four nodes; one at node m needs its neighbours m−1 and m+1 (Lemma 5.4), one at
+    /// node m+1 needs m and m+2; the inflection conditions are conditions at the nodes, and so is
+    /// turning (paper 000, Lemma 4.2). A violation of collinearity away from its node needs the two
+    /// nodes of that segment, or all three nodes around (Lemma 5.9). A segment on which the curve
+    /// stops needs shorter legs: its two nodes.
     #[must_use]
     pub fn of(violations: Violations) -> Self {
         const ALL: Violations = Violations::CONVEXITY_BETWEEN

@@ -41,9 +41,9 @@ impl<F: TensionFamily> State<'_, F> {
         Ok(status)
     }
 
-    /// Raises the tension that the violations require: (5.58)–(5.65), with the index m + k (E4), and that
-    /// ahead of fronts. Returns the number of nodes; `None` if a segment fails at whose nodes tension can
-    /// rise no further.
+    /// Raises the tension that the violations require: (5.58)–(5.65), with the index m + k (E4),
+    /// and that ahead of fronts. Returns the number of nodes; `None` if a segment fails at whose
+    /// nodes tension can rise no further.
     fn raise_pending(&mut self, options: &SearchOptions, fronts: &[Front]) -> Option<usize> {
         let ahead = self.ahead(fronts);
         let equal = self.find_nodes();
@@ -103,8 +103,8 @@ impl<F: TensionFamily> State<'_, F> {
         })
     }
 
-    /// Finds the nodes that the violations require to be raised, and the segments at whose nodes tension is to be
-    /// equal.
+    /// Finds the nodes that the violations require to be raised, and the segments at whose nodes
+    /// tension is to be equal.
     fn find_nodes(&mut self) -> Vec<usize> {
         let mut equal = Vec::new();
         self.nodes.clear();

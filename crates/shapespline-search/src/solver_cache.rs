@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Solving a system while its tension changes: its rows are cached, and trials solve only a few of them.
+//! Solving a system while its tension changes: its rows are cached, and trials solve only a few of
+//! them.
 
 use std::{cell::Cell, convert::Infallible, ops::Range};
 
@@ -47,8 +48,8 @@ impl<S: Rows> Rows for CachedRows<'_, S> {
     }
 }
 
-/// Above this many rows a trial solve costs as much as an update. Smaller systems are re-solved in full:
-/// a change alters nearly all of their unknowns.
+/// Above this many rows a trial solve costs as much as an update. Smaller systems are re-solved in
+/// full: a change alters nearly all of their unknowns.
 pub(crate) const MAX_TRIAL_ROWS: usize = 96;
 
 /// The solver and the memory of solves and trials; all but the solution is scratch.

@@ -179,8 +179,8 @@ impl<'s, F: TensionFamily> State<'s, F> {
         Ok(())
     }
 
-    /// Sets tensions of a curve without violations; whether it still has none. Ends at the first violation, and
-    /// leaves it to the next solve to look at the rest.
+    /// Sets tensions of a curve without violations; whether it still has none. Ends at the first
+    /// violation, and leaves it to the next solve to look at the rest.
     pub(crate) fn try_tension(&mut self, changes: &[(usize, f64)]) -> Result<bool, F::Error> {
         self.solve(changes)?;
         let (family, windows, doubts) = (&*self.family, &mut self.windows, &self.doubts);

@@ -29,6 +29,9 @@
 //! Source: C. Manni, *Parametric shape-preserving spatial interpolation and ν-splines*, Algorithms
 //! for Approximation IV (2001) ("paper 000"); natural ends are ours.
 //!
+//! Symbols and terms:
+//! [notation](https://github.com/shapespline/shapespline/blob/main/python/docs/notation.md).
+//!
 //! ```
 //! use shapespline_tension::geometry::{
 //!     Boundary, Curve, DVec3, DataPolygon, Parametrization, Side,

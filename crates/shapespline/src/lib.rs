@@ -4,6 +4,8 @@
 //! space, and functions of one variable.
 //!
 //! This crate re-exports the crates of the workspace under one name; each can be used alone.
+//! Symbols and terms:
+//! [notation](https://github.com/shapespline/shapespline/blob/main/python/docs/notation.md).
 //!
 //! | module | what it holds |
 //! |---|---|

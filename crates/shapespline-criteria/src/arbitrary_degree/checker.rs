@@ -231,8 +231,8 @@ impl<'a> CurveChecker<'a> {
         self.node_conditions_with(&|| ControlFlow::Continue(())).unwrap_or_default()
     }
 
-    /// As [`CurveChecker::node_conditions`], but calls `go_on` before each node and segment, and returns `None` once
-    /// that breaks.
+    /// As [`CurveChecker::node_conditions`], but calls `go_on` before each node and segment, and
+    /// returns `None` once that breaks.
     #[must_use]
     pub fn node_conditions_with(
         &self,

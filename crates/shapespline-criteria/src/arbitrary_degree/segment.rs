@@ -325,7 +325,7 @@ mod tests {
         }
     }
 
-    /// Scan on a hiking track: a part that ended 1e−15 after a break left a piece without extent, whose
+    /// Found on a hiking track: a part that ended 1e−15 after a break left a piece without extent, whose
     /// tangent is zero and fails every criterion.
     #[test]
     fn a_part_that_ends_at_a_break_has_no_sliver_beyond_it() {

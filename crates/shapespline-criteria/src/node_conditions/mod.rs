@@ -124,8 +124,8 @@ impl Checker<'_> {
         self.node_conditions_with(legs, &|| ControlFlow::Continue(())).unwrap_or_default()
     }
 
-    /// As [`Checker::node_conditions`], but calls `go_on` before each node and segment, and returns `None` once that
-    /// breaks.
+    /// As [`Checker::node_conditions`], but calls `go_on` before each node and segment, and returns
+    /// `None` once that breaks.
     pub fn node_conditions_with<L>(
         &self,
         legs: L,
