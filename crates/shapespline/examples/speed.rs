@@ -48,7 +48,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("{:<44}{kept:>8.1}", "Catmull–Rom, shape-preserving");
     let search = SearchOptions::default();
     let calls = best(n, || search.checker(&polygon).map(|_| ()));
-    println!("{:<44}{calls:>8.1}", "  of it: what the polygon calls for");
+    println!("{:<44}{calls:>8.1}", "  of it: what the polygon requires");
     let checker = search.checker(&polygon)?;
     let curve = CatmullRom::shape_preserving(polygon.clone(), &options)?.curve;
     let legs = curve.curve().legs();
