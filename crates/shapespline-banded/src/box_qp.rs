@@ -97,7 +97,7 @@ pub struct BoxQpSolution {
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Place {
+enum VariableState {
     Lower,
     Free,
     Upper,
@@ -133,8 +133,12 @@ pub fn solve_with_patience(
 ) -> Result<BoxQpSolution, BoxQpError> {
     validate(program)?;
     let n = program.diagonal.len();
-    let mut state =
-        ActiveSet { program, x: vec![0.0; n], place: vec![Place::Free; n], work: vec![0.0; n] };
+    let mut state = ActiveSet {
+        program,
+        x: vec![0.0; n],
+        place: vec![VariableState::Free; n],
+        work: vec![0.0; n],
+    };
     state.guess();
     let (mut iterations, mut safeguards) = (0, 0);
     let mut solved = false;
@@ -157,7 +161,7 @@ pub fn solve_with_patience(
         state.gauss_seidel();
     }
     let kkt_residual = kkt_residual(program, &state.x);
-    let active = state.place.iter().filter(|p| **p != Place::Free).count();
+    let active = state.place.iter().filter(|p| **p != VariableState::Free).count();
     Ok(BoxQpSolution { x: state.x, iterations, active, safeguards, kkt_residual, solved })
 }
 

@@ -10,7 +10,7 @@ use shapespline::{
 
 use crate::{
     asked::Asked,
-    pickle::{self, Kind, Reduced},
+    pickle::{self, PickledKind, Reduced},
 };
 
 /// Diagnostics and history, by what was searched for.
@@ -125,7 +125,7 @@ impl Diagnostics {
     }
 
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
-        pickle::reduce_whole(slf, Kind::Diagnostics)
+        pickle::reduce_whole(slf, PickledKind::Diagnostics)
     }
 }
 
@@ -177,6 +177,6 @@ impl SearchStep {
     }
 
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
-        pickle::reduce_whole(slf, Kind::SearchStep)
+        pickle::reduce_whole(slf, PickledKind::SearchStep)
     }
 }

@@ -11,7 +11,7 @@ use shapespline::{
     geometry::{InputMap, largest_curvature},
 };
 
-use crate::pickle::{self, Kind, Reduced};
+use crate::pickle::{self, PickledKind, Reduced};
 
 /// How a `FairSpline` was found, and what it came to.
 ///
@@ -187,7 +187,7 @@ impl FairDiagnostics {
     }
 
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
-        pickle::reduce_whole(slf, Kind::FairDiagnostics)
+        pickle::reduce_whole(slf, PickledKind::FairDiagnostics)
     }
 }
 
@@ -240,6 +240,6 @@ impl FairStep {
     }
 
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
-        pickle::reduce_whole(slf, Kind::FairStep)
+        pickle::reduce_whole(slf, PickledKind::FairStep)
     }
 }

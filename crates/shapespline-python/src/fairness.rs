@@ -7,7 +7,7 @@ use shapespline::geometry::{self, Place, fairness_with};
 
 use crate::{
     curve::SpaceCurve,
-    pickle::{self, Kind, Reduced},
+    pickle::{self, PickledKind, Reduced},
     piecewise::PiecewiseBezier,
     work::{GoOn, interrupted, interruptible},
 };
@@ -139,7 +139,7 @@ impl Fairness {
     }
 
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
-        pickle::reduce_whole(slf, Kind::Fairness)
+        pickle::reduce_whole(slf, PickledKind::Fairness)
     }
 }
 

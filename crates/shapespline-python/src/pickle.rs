@@ -34,7 +34,7 @@ const CHECKSUM: usize = 4;
 
 /// What a pickle holds, by the number in its first byte: append only.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Kind {
+pub(crate) enum PickledKind {
     Curve,
     Report,
     PiecewiseBezier,
@@ -51,7 +51,7 @@ pub(crate) enum Kind {
     MonotoneSmoothing,
 }
 
-impl Kind {
+impl PickledKind {
     const ALL: [(Self, &'static str); 14] = [
         (Self::Curve, "a curve"),
         (Self::Report, "a ShapeReport"),
@@ -84,7 +84,7 @@ pub(crate) type Reduced<'py> = (Bound<'py, PyAny>, (Bound<'py, PyBytes>,));
 /// The pickle of an object, whose parts `write` appends in postcard's form.
 pub(crate) fn reduce<'py>(
     py: Python<'py>,
-    kind: Kind,
+    kind: PickledKind,
     write: impl FnOnce(Vec<u8>) -> Result<Vec<u8>, postcard::Error> + Send,
 ) -> PyResult<Reduced<'py>> {
     let make = py.import("shapespline._core")?.getattr("_from_bytes")?;
@@ -101,7 +101,10 @@ pub(crate) fn reduce<'py>(
 }
 
 /// The pickle of an object that serde knows as a whole.
-pub(crate) fn reduce_whole<'py, C>(object: &Bound<'py, C>, kind: Kind) -> PyResult<Reduced<'py>>
+pub(crate) fn reduce_whole<'py, C>(
+    object: &Bound<'py, C>,
+    kind: PickledKind,
+) -> PyResult<Reduced<'py>>
 where
     C: PyClass<Frozen = pyo3::pyclass::boolean_struct::True> + Serialize + Sync,
 {
@@ -110,8 +113,9 @@ where
 }
 
 /// Kind and parts of a pickle that is whole.
-fn opened(data: &[u8]) -> PyResult<(Kind, &[u8])> {
-    let Some((kind, name)) = data.first().and_then(|&k| Kind::ALL.get(usize::from(k)).copied())
+fn opened(data: &[u8]) -> PyResult<(PickledKind, &[u8])> {
+    let Some((kind, name)) =
+        data.first().and_then(|&k| PickledKind::ALL.get(usize::from(k)).copied())
     else {
         return Err(refused("these bytes are no pickle of shapespline".to_owned()));
     };
@@ -148,20 +152,20 @@ pub(crate) fn _from_bytes<'py>(py: Python<'py>, data: &[u8]) -> PyResult<Bound<'
     let (kind, mut bytes) = without_gil(py, 0, || opened(data))?;
     let size = bytes.len();
     match kind {
-        Kind::Curve => {
+        PickledKind::Curve => {
             let (curve, search) = without_gil(py, size, || read_curve(&mut bytes))?;
             Ok(SpaceCurve::of(curve, search).into_python(py)?.into_bound(py))
         }
-        Kind::Report => {
+        PickledKind::Report => {
             let subject = without_gil(py, size, || read_subject(&mut bytes))?;
             let (report, asked) = whole(bytes)?;
             ShapeReport::of(report, subject, asked).into_bound_py_any(py)
         }
-        Kind::PiecewiseBezier => {
+        PickledKind::PiecewiseBezier => {
             let curve = without_gil(py, size, || assemble(whole(bytes)?))?;
             PiecewiseBezier::of(curve).into_bound_py_any(py)
         }
-        Kind::Function => {
+        PickledKind::Function => {
             let (layout, fits): (Layout, Fits) = without_gil(py, size, || whole(bytes))?;
             if !(fits.is_sound() && fits.agree() && layout.is_of(fits.len())) {
                 return Err(damaged("lengths do not agree"));
@@ -169,22 +173,24 @@ pub(crate) fn _from_bytes<'py>(py: Python<'py>, data: &[u8]) -> PyResult<Bound<'
             let function = PiecewisePolynomial::of(fits, &Arc::new(layout));
             Ok(function.into_python(py)?.into_bound(py))
         }
-        Kind::Rows => {
+        PickledKind::Rows => {
             let (ragged, fits): (bool, Fits) = without_gil(py, size, || whole(bytes))?;
             if !(fits.is_sound() && (ragged || fits.agree())) {
                 return Err(damaged("lengths do not agree"));
             }
             Ok(PiecewiseRows::of(fits, ragged).into_python(py)?.into_bound(py))
         }
-        Kind::Tangents => whole::<Tangents>(bytes)?.into_bound_py_any(py),
-        Kind::ShapeRecord => whole::<ShapeRecord>(bytes)?.into_bound_py_any(py),
-        Kind::Diagnostics => whole::<Diagnostics>(bytes)?.into_bound_py_any(py),
-        Kind::SearchStep => whole::<SearchStep>(bytes)?.into_bound_py_any(py),
-        Kind::MonotoneDiagnostics => whole::<MonotoneDiagnostics>(bytes)?.into_bound_py_any(py),
-        Kind::Fairness => whole::<Fairness>(bytes)?.into_bound_py_any(py),
-        Kind::FairDiagnostics => whole::<FairDiagnostics>(bytes)?.into_bound_py_any(py),
-        Kind::FairStep => whole::<FairStep>(bytes)?.into_bound_py_any(py),
-        Kind::MonotoneSmoothing => whole::<MonotoneSmoothing>(bytes)?.into_bound_py_any(py),
+        PickledKind::Tangents => whole::<Tangents>(bytes)?.into_bound_py_any(py),
+        PickledKind::ShapeRecord => whole::<ShapeRecord>(bytes)?.into_bound_py_any(py),
+        PickledKind::Diagnostics => whole::<Diagnostics>(bytes)?.into_bound_py_any(py),
+        PickledKind::SearchStep => whole::<SearchStep>(bytes)?.into_bound_py_any(py),
+        PickledKind::MonotoneDiagnostics => {
+            whole::<MonotoneDiagnostics>(bytes)?.into_bound_py_any(py)
+        }
+        PickledKind::Fairness => whole::<Fairness>(bytes)?.into_bound_py_any(py),
+        PickledKind::FairDiagnostics => whole::<FairDiagnostics>(bytes)?.into_bound_py_any(py),
+        PickledKind::FairStep => whole::<FairStep>(bytes)?.into_bound_py_any(py),
+        PickledKind::MonotoneSmoothing => whole::<MonotoneSmoothing>(bytes)?.into_bound_py_any(py),
     }
 }
 

@@ -13,7 +13,7 @@ use crate::{
     input::{Array, Query, array, finite},
     options,
     output::{FloatArray, shaped, vector, zeros},
-    pickle::{self, Kind, Reduced},
+    pickle::{self, PickledKind, Reduced},
 };
 
 /// A curve of any degree, polynomial or rational, given by the Bézier points of its pieces.
@@ -343,7 +343,7 @@ impl PiecewiseBezier {
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
         let write = |bytes| pickle::write_piecewise(&self.curve, bytes);
-        pickle::reduce(py, Kind::PiecewiseBezier, write)
+        pickle::reduce(py, PickledKind::PiecewiseBezier, write)
     }
 
     fn __copy__(slf: Py<Self>) -> Py<Self> {

@@ -11,7 +11,7 @@ use crate::{
     error::{Value, invalid, must},
     input::{Numbers, numbers},
     output::{FloatArray, vector},
-    pickle::{self, Kind, Reduced},
+    pickle::{self, PickledKind, Reduced},
 };
 
 /// Given tangents at the ends of a curve, or at one of them, for the argument ``boundary``.
@@ -145,7 +145,7 @@ impl Tangents {
     }
 
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
-        pickle::reduce_whole(slf, Kind::Tangents)
+        pickle::reduce_whole(slf, PickledKind::Tangents)
     }
 
     fn __copy__(slf: Py<Self>) -> Py<Self> {

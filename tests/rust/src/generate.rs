@@ -42,7 +42,7 @@ impl Random {
 
 /// Kinds of random polygon.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kind {
+pub enum PolygonKind {
     /// Steps uniform in a cube.
     Walk,
     /// Along a line, off it by 10⁻² to 10⁻¹².
@@ -61,7 +61,7 @@ pub enum Kind {
     Track,
 }
 
-impl Kind {
+impl PolygonKind {
     /// All kinds.
     pub const ALL: [Self; 8] = [
         Self::Walk,
@@ -113,7 +113,7 @@ impl Kind {
 /// A polygon of a kind; the case chooses boundary and parametrisation. `None` where a walk happens to
 /// step back onto its neighbour.
 #[must_use]
-pub fn polygon(kind: Kind, case: usize, random: &mut Random) -> Option<DataPolygon> {
+pub fn polygon(kind: PolygonKind, case: usize, random: &mut Random) -> Option<DataPolygon> {
     let n = 2 + random.below(50);
     let mut points = kind.points(n, random);
     let boundary = match case % 4 {

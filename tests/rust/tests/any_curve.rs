@@ -11,7 +11,7 @@ use shapespline::geometry::{DVec4, PiecewiseBezier};
 use shapespline::prelude::*;
 use shapespline_tests::{
     feature_line,
-    generate::{Kind, Random},
+    generate::{PolygonKind, Random},
     helix, segments,
 };
 
@@ -464,7 +464,7 @@ fn reports_can_be_written_and_read() {
         postcard::from_bytes(&postcard::to_stdvec(x).unwrap()).unwrap()
     }
     let mut random = Random::new(17);
-    let points = Kind::Walk.points(12, &mut random);
+    let points = PolygonKind::Walk.points(12, &mut random);
     let natural = Boundary::ZeroCurvature;
     let polygon = DataPolygon::new(points.clone(), &Parametrization::Uniform, natural).unwrap();
     let checker = Checker::new(&polygon, Criteria::ALL, Tolerances::default());

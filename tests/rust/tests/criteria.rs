@@ -6,7 +6,7 @@
 use shapespline::criteria::{AffineDimension, NodeCondition, polygon_shape};
 use shapespline::prelude::*;
 use shapespline_tests::{
-    generate::{Kind, Random},
+    generate::{PolygonKind, Random},
     points,
     segments::{SEGMENT, case},
 };
@@ -166,7 +166,7 @@ fn a_search_keeps_global_convexity_when_asked() {
     let criteria = Criteria::ALL.without(Criterion::Regular);
     let options = SearchOptions { criteria, ..SearchOptions::default() };
     let mut mended = 0;
-    for kind in Kind::ALL {
+    for kind in PolygonKind::ALL {
         for _ in 0..30 {
             let data = kind.points(12, &mut random);
             let natural = Boundary::ZeroCurvature;

@@ -12,7 +12,7 @@ use shapespline::{
     prelude::*,
 };
 use shapespline_tests::{
-    generate::{Kind, Random},
+    generate::{PolygonKind, Random},
     points, scaled,
 };
 
@@ -324,7 +324,7 @@ fn bending_walks_bend_less_than_the_plain_cubic() {
 fn hard_polygons_violate_nothing() {
     let mut random = Random::new(16);
     for seed in 0..scaled(800) {
-        let kind = Kind::ALL[seed % Kind::ALL.len()];
+        let kind = PolygonKind::ALL[seed % PolygonKind::ALL.len()];
         let n = 4 + random.below(16);
         let points = kind.points(n, &mut random);
         let fit = fit(natural(points, Dimension::Three), Energy::Parametric);

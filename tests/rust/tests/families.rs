@@ -7,14 +7,14 @@ use shapespline::{geometry::Domain, prelude::*};
 use shapespline_tests::{
     families::Family,
     feature_line,
-    generate::{Kind, Random, polygon},
+    generate::{PolygonKind, Random, polygon},
     helix, points,
 };
 
 #[test]
 fn no_violation_on_thousands_of_polygons() {
     let mut random = Random::new(17);
-    for kind in Kind::ALL {
+    for kind in PolygonKind::ALL {
         for case in 0..300 {
             let Some(polygon) = polygon(kind, case, &mut random) else { continue };
             for family in Family::DEFAULTS {
@@ -85,7 +85,13 @@ fn globally_convex(legs: [DVec3; 3], n: DVec3) -> bool {
 fn catmull_rom_is_globally_convex_and_never_twists_the_wrong_way() {
     let mut random = Random::new(23);
     let (mut convex, mut twisted) = (0, 0);
-    for kind in [Kind::Walk, Kind::Track, Kind::Planar, Kind::ChordRatios, Kind::DoublingBack] {
+    for kind in [
+        PolygonKind::Walk,
+        PolygonKind::Track,
+        PolygonKind::Planar,
+        PolygonKind::ChordRatios,
+        PolygonKind::DoublingBack,
+    ] {
         for case in 0..200 {
             let Some(polygon) = polygon(kind, case, &mut random) else { continue };
             for continuity in [Continuity::C1, Continuity::G1] {
@@ -119,7 +125,7 @@ fn catmull_rom_is_globally_convex_and_never_twists_the_wrong_way() {
 #[test]
 fn c2_in_its_parameter_down_to_small_lambda() {
     let mut random = Random::new(5);
-    for kind in [Kind::Walk, Kind::Track, Kind::Planar] {
+    for kind in [PolygonKind::Walk, PolygonKind::Track, PolygonKind::Planar] {
         for case in 0..60 {
             let Some(polygon) = polygon(kind, case, &mut random) else { continue };
             let mut lambda = || 10f64.powf(random.within(-3.0, 0.0));
@@ -159,7 +165,7 @@ fn c2_in_its_parameter_down_to_small_lambda() {
 #[test]
 fn lambda_one_is_the_c2_cubic_and_one_lambda_a_node_a_nu_spline() {
     let mut random = Random::new(31);
-    for kind in [Kind::Walk, Kind::Track, Kind::Planar, Kind::Walk] {
+    for kind in [PolygonKind::Walk, PolygonKind::Track, PolygonKind::Planar, PolygonKind::Walk] {
         for case in 0..100 {
             let Some(polygon) = polygon(kind, case, &mut random) else { continue };
             let n = polygon.points().len();
@@ -215,7 +221,7 @@ fn lambda_one_is_the_c2_cubic_and_one_lambda_a_node_a_nu_spline() {
 fn limits_of_lemma_4_1_to_4_3() {
     let mut random = Random::new(41);
     for case in 0..200 {
-        let Some(polygon) = polygon(Kind::Walk, case, &mut random) else { continue };
+        let Some(polygon) = polygon(PolygonKind::Walk, case, &mut random) else { continue };
         let segments = polygon.segments();
         let ratio = random.within(0.2, 1.0);
         let spline = |lambda: f64| {
@@ -269,7 +275,7 @@ fn the_reduction_of_paper_000_on_the_feature_line() {
 fn zero_curvature_and_closed_ends_are_what_they_say() {
     let mut random = Random::new(8);
     for case in 0..80 {
-        let Some(polygon) = polygon(Kind::Walk, case, &mut random) else { continue };
+        let Some(polygon) = polygon(PolygonKind::Walk, case, &mut random) else { continue };
         let size = polygon.parameters()[polygon.segments()];
         for family in Family::DEFAULTS {
             let fit = family.fit(polygon.clone());
@@ -298,7 +304,7 @@ fn many_curves_at_once_are_the_curves_one_by_one_and_faults_stay_alone() {
     let mut all = Vec::new();
     let mut offsets = vec![0];
     for k in 0..60 {
-        let mut row = Kind::ALL[k % 8].points(3 + random.below(40), &mut random);
+        let mut row = PolygonKind::ALL[k % 8].points(3 + random.below(40), &mut random);
         match k {
             7 => row[1] = row[0],
             11 => row[2] = DVec3::NAN,
@@ -432,7 +438,7 @@ fn split_coplanarity_with_uneven_spacing() {
 #[test]
 fn global_convexity_on_request() {
     let mut random = Random::new(101);
-    for kind in [Kind::Walk, Kind::Track, Kind::Planar] {
+    for kind in [PolygonKind::Walk, PolygonKind::Track, PolygonKind::Planar] {
         for case in 0..100 {
             let Some(polygon) = polygon(kind, case, &mut random) else { continue };
             let criteria = Criteria::ALL.without(Criterion::Regular);

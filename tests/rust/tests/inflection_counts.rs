@@ -8,7 +8,7 @@ use shapespline::criteria::{
 };
 use shapespline::geometry::PiecewiseBezier;
 use shapespline::prelude::*;
-use shapespline_tests::generate::{Kind, Random};
+use shapespline_tests::generate::{PolygonKind, Random};
 
 fn bezier(control: &[DVec3], dimension: Dimension) -> PiecewiseBezier {
     PiecewiseBezier::new(vec![0.0, 1.0], control, control.len() - 1, dimension).unwrap()
@@ -197,7 +197,7 @@ fn theorems_7_3_and_7_4() {
 #[test]
 fn counts_do_not_depend_on_scale_position_orientation_or_direction() {
     let mut random = Random::new(5);
-    for kind in Kind::ALL {
+    for kind in PolygonKind::ALL {
         for _ in 0..20 {
             let n = 3 + random.below(20);
             let points = kind.points(n, &mut random);
@@ -225,7 +225,7 @@ fn counts_do_not_depend_on_scale_position_orientation_or_direction() {
 #[test]
 fn large_polygons_and_piecewise_curves() {
     let mut random = Random::new(9);
-    let walk = Kind::Walk.points(1500, &mut random);
+    let walk = PolygonKind::Walk.points(1500, &mut random);
     let start = std::time::Instant::now();
     let count = polygon_inflections(&walk, Dimension::Three).unwrap();
     println!("{} inflections of 1,500 points in {:?}", count.count, start.elapsed());
@@ -235,7 +235,7 @@ fn large_polygons_and_piecewise_curves() {
     );
 
     // A corner counts as a turn: a polyline as a curve has the inflections of the polygon.
-    let points = Kind::Walk.points(12, &mut random);
+    let points = PolygonKind::Walk.points(12, &mut random);
     let u: Vec<f64> = (0..12).map(f64::from).collect();
     let line: Vec<DVec3> = points.windows(2).flat_map(|w| [w[0], w[1]]).collect();
     let polyline = PiecewiseBezier::new(u, &line, 1, Dimension::Three).unwrap();

@@ -10,7 +10,7 @@ use shapespline::criteria::{
 };
 use shapespline::geometry::PiecewiseBezier;
 use shapespline::prelude::*;
-use shapespline_tests::generate::{Kind, Random};
+use shapespline_tests::generate::{PolygonKind, Random};
 
 /// A piecewise cubic in space through random points: with continuous curvature (a B-spline), with
 /// continuous tangents, or with corners.
@@ -129,7 +129,7 @@ fn the_maximum_does_not_depend_on_the_pieces() {
 fn planar_pieces_count_like_a_polygon() {
     let mut random = Random::new(79);
     for case in 0..50 {
-        let points = Kind::Walk.points(3 + case % 8, &mut random);
+        let points = PolygonKind::Walk.points(3 + case % 8, &mut random);
         let n = points.len() - 1;
         // Rounded corners: a quadratic around each inner point, straight pieces between.
         let middle = |i: usize| (points[i] + points[i + 1]) * 0.5;
@@ -295,7 +295,7 @@ fn a_count_can_be_broken_off() {
 
     let mut random = Random::new(80);
     let curve = spatial(2, 400, &mut random);
-    let points = Kind::Walk.points(400, &mut random);
+    let points = PolygonKind::Walk.points(400, &mut random);
     let asked = AtomicUsize::new(0);
     let go_on = || {
         let asked = asked.fetch_add(1, Ordering::Relaxed);

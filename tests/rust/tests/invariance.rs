@@ -7,7 +7,7 @@ use shapespline::prelude::*;
 use shapespline_tests::{
     families::Family,
     feature_line,
-    generate::{Kind, Random, polygon},
+    generate::{PolygonKind, Random, polygon},
     helix, points, scaled,
 };
 
@@ -21,7 +21,13 @@ fn sets() -> Vec<DataPolygon> {
         chordal(points("protein_1a8o_ca.csv"), Boundary::Circular),
         chordal(points("coil_m16n08_first.csv"), Boundary::Periodic),
     ];
-    for kind in [Kind::Walk, Kind::Planar, Kind::Track, Kind::Walk, Kind::Track] {
+    for kind in [
+        PolygonKind::Walk,
+        PolygonKind::Planar,
+        PolygonKind::Track,
+        PolygonKind::Walk,
+        PolygonKind::Track,
+    ] {
         sets.push(chordal(kind.points(30, &mut random), Boundary::ZeroCurvature));
     }
     sets
@@ -123,7 +129,7 @@ fn mirrors_and_powers_of_two_change_no_bit() {
     let units = [(two(40), 1.0), (1.0, two(-33)), (two(-80), two(70))];
     let mut random = Random::new(22);
     let mut curves = 0;
-    for kind in Kind::ALL {
+    for kind in PolygonKind::ALL {
         for case in 0..scaled(240) {
             let Some(polygon) = polygon(kind, case, &mut random) else { continue };
             let (sign, (scale, unit)) = (signs[case % 3], units[case / 3 % 3]);

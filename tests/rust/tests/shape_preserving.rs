@@ -11,7 +11,7 @@ use std::ops::ControlFlow;
 use shapespline::{geometry::CubicSegment, prelude::*};
 use shapespline_tests::{
     feature_line,
-    generate::{Kind, Random, polygon},
+    generate::{PolygonKind, Random, polygon},
     helix, points,
 };
 
@@ -22,7 +22,7 @@ fn options(strategy: Strategy) -> SearchOptions {
 #[test]
 fn every_kind_of_polygon_is_solved_and_fairest_needs_no_more_tension_than_growth() {
     let mut random = Random::new(11);
-    for kind in Kind::ALL {
+    for kind in PolygonKind::ALL {
         for case in 0..250 {
             let Some(polygon) = polygon(kind, case, &mut random) else { continue };
             let growth =
@@ -52,7 +52,7 @@ fn every_kind_of_polygon_is_solved_and_fairest_needs_no_more_tension_than_growth
 fn spacings_that_differ_by_1e5_are_solved() {
     let mut random = Random::new(19);
     for case in 0..300 {
-        let kind = if case % 2 == 0 { Kind::Walk } else { Kind::Planar };
+        let kind = if case % 2 == 0 { PolygonKind::Walk } else { PolygonKind::Planar };
         let points = kind.points(4 + case % 5, &mut random);
         let close = random.below(points.len() - 1);
         let spacing = |i: usize| if i == close { 1e-5 } else { 0.5 + random.unit() };
@@ -88,7 +88,7 @@ fn no_tension_of_a_fairest_curve_can_be_lowered() {
         chordal("coil_m16n08_first.csv"),
     ];
     let mut random = Random::new(5);
-    sets.extend((0..60).filter_map(|case| polygon(Kind::ALL[case % 8], 3, &mut random)));
+    sets.extend((0..60).filter_map(|case| polygon(PolygonKind::ALL[case % 8], 3, &mut random)));
     let (mut tested, mut bends_more, mut spare) = (0, 0, Vec::new());
     for polygon in sets {
         let fit = NuSpline::shape_preserving(polygon.clone(), &options(Strategy::Fairest)).unwrap();

@@ -2,7 +2,7 @@
 
 //! The method: moves of whole blocks between the bounds, and solves only where something moved.
 
-use super::{BLOCK, Block, BoxQpError, Place, TridiagonalBoxQp, gradient};
+use super::{BLOCK, Block, BoxQpError, TridiagonalBoxQp, VariableState, gradient};
 
 /// A multiplier of the wrong sign within so much of its terms is rounding, not a contradiction.
 const TOLERANCE: f64 = 8.0 * f64::EPSILON;
@@ -10,7 +10,7 @@ const TOLERANCE: f64 = 8.0 * f64::EPSILON;
 pub(super) struct ActiveSet<'a, 'b> {
     pub(super) program: &'a TridiagonalBoxQp<'b>,
     pub(super) x: Vec<f64>,
-    pub(super) place: Vec<Place>,
+    pub(super) place: Vec<VariableState>,
     pub(super) work: Vec<f64>,
 }
 
@@ -48,12 +48,12 @@ impl ActiveSet<'_, '_> {
                 }
                 // The solution changes between the nearest active variables on either side and their multipliers.
                 let mut from = i;
-                while from > done && self.place[from - 1] == Place::Free {
+                while from > done && self.place[from - 1] == VariableState::Free {
                     from -= 1;
                 }
                 let from = from.saturating_sub(1).max(done);
                 let mut to = i + 1;
-                while to < n && self.place[to] == Place::Free {
+                while to < n && self.place[to] == VariableState::Free {
                     to += 1;
                 }
                 let to = (to + 1).min(n);
@@ -86,9 +86,9 @@ impl ActiveSet<'_, '_> {
 
     fn pin(&mut self, i: usize) {
         match self.place[i] {
-            Place::Lower => self.x[i] = self.program.lower[i],
-            Place::Upper => self.x[i] = self.program.upper[i],
-            Place::Free => {}
+            VariableState::Lower => self.x[i] = self.program.lower[i],
+            VariableState::Upper => self.x[i] = self.program.upper[i],
+            VariableState::Free => {}
         }
     }
 
@@ -98,7 +98,7 @@ impl ActiveSet<'_, '_> {
         let n = self.x.len();
         let mut i = from;
         while i < to {
-            if self.place[i] != Place::Free {
+            if self.place[i] != VariableState::Free {
                 i += 1;
                 continue;
             }
@@ -106,7 +106,7 @@ impl ActiveSet<'_, '_> {
             let mut rhs_carry =
                 if start > 0 { -p.off_diagonal[start - 1] * self.x[start - 1] } else { 0.0 };
             let mut factor = 0.0;
-            while i < to && self.place[i] == Place::Free {
+            while i < to && self.place[i] == VariableState::Free {
                 let below = if i > start { p.off_diagonal[i - 1] } else { 0.0 };
                 let pivot = p.diagonal[i] - below * factor;
                 if !(pivot > 0.0) {
@@ -134,7 +134,7 @@ impl ActiveSet<'_, '_> {
     }
 
     /// Variables of `from..to` that contradict their place, with the place they should move to.
-    fn contradictions(&self, from: usize, to: usize, out: &mut Vec<(usize, Place)>) {
+    fn contradictions(&self, from: usize, to: usize, out: &mut Vec<(usize, VariableState)>) {
         for from in (from..to).step_by(BLOCK) {
             let to = to.min(from + BLOCK);
             if !(to - from == BLOCK && self.settled(from)) {
@@ -157,21 +157,26 @@ impl ActiveSet<'_, '_> {
         })
     }
 
-    fn contradictions_one_by_one(&self, from: usize, to: usize, out: &mut Vec<(usize, Place)>) {
+    fn contradictions_one_by_one(
+        &self,
+        from: usize,
+        to: usize,
+        out: &mut Vec<(usize, VariableState)>,
+    ) {
         let p = self.program;
         for i in from..to {
             let (x, l, u, place) = (self.x[i], p.lower[i], p.upper[i], self.place[i]);
             let (g, size) = gradient(p, &self.x, i);
             let tolerance = TOLERANCE * size;
             // Logic without branches: which variables are active cannot be predicted, that few contradict can.
-            let beyond = (place == Place::Free) & ((x < l) | (x > u));
-            let pulled = (place == Place::Lower) & (g < -tolerance);
-            let pushed = (place == Place::Upper) & (g > tolerance);
+            let beyond = (place == VariableState::Free) & ((x < l) | (x > u));
+            let pulled = (place == VariableState::Lower) & (g < -tolerance);
+            let pushed = (place == VariableState::Upper) & (g > tolerance);
             if beyond | ((pulled | pushed) & (l != u)) {
                 let to = match place {
-                    Place::Free if x < l => Place::Lower,
-                    Place::Free => Place::Upper,
-                    _ => Place::Free,
+                    VariableState::Free if x < l => VariableState::Lower,
+                    VariableState::Free => VariableState::Upper,
+                    _ => VariableState::Free,
                 };
                 out.push((i, to));
             }

@@ -3,7 +3,7 @@
 //! Guesses of the active set: where the iteration begins, and where it begins anew.
 
 use super::active_set::ActiveSet;
-use super::{Place, gradient};
+use super::{VariableState, gradient};
 
 /// Sweeps of the first guess.
 const GUESSES: usize = 2;
@@ -49,8 +49,8 @@ impl ActiveSet<'_, '_> {
             // An infinite bound is none, whatever the sweeps made of x.
             let low = (self.x[i] <= l) & (l > f64::NEG_INFINITY);
             let high = (self.x[i] >= u) & (u < f64::INFINITY);
-            let upper = if high { Place::Upper } else { Place::Free };
-            self.place[i] = if low | (l == u) { Place::Lower } else { upper };
+            let upper = if high { VariableState::Upper } else { VariableState::Free };
+            self.place[i] = if low | (l == u) { VariableState::Lower } else { upper };
         }
     }
 
@@ -72,11 +72,11 @@ impl ActiveSet<'_, '_> {
         for i in 0..n {
             let g = gradient(p, &self.x, i).0;
             self.place[i] = if p.lower[i] == p.upper[i] || (self.x[i] <= p.lower[i] && g > 0.0) {
-                Place::Lower
+                VariableState::Lower
             } else if self.x[i] >= p.upper[i] && g < 0.0 {
-                Place::Upper
+                VariableState::Upper
             } else {
-                Place::Free
+                VariableState::Free
             };
         }
     }

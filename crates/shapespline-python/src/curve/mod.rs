@@ -22,7 +22,7 @@ use crate::{
     catmull_rom,
     diagnostics::Search,
     fair, nu,
-    pickle::{self, Kind, Reduced},
+    pickle::{self, PickledKind, Reduced},
     tension,
 };
 
@@ -293,7 +293,7 @@ impl SpaceCurve {
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
-        pickle::reduce(py, Kind::Curve, |bytes| {
+        pickle::reduce(py, PickledKind::Curve, |bytes| {
             pickle::write_curve(&self.curve, self.search.as_deref(), bytes)
         })
     }

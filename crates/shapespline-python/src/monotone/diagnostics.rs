@@ -5,7 +5,7 @@
 use pyo3::prelude::*;
 use shapespline::monotone::{Diagnostics, MonotoneQuartic, Solver};
 
-use crate::pickle::{self, Kind, Reduced};
+use crate::pickle::{self, PickledKind, Reduced};
 
 /// How the optimisation of one column went. The function is monotone whatever these numbers say.
 ///
@@ -111,6 +111,6 @@ impl MonotoneDiagnostics {
     }
 
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
-        pickle::reduce_whole(slf, Kind::MonotoneDiagnostics)
+        pickle::reduce_whole(slf, PickledKind::MonotoneDiagnostics)
     }
 }

@@ -18,7 +18,7 @@ use super::{
 use crate::{
     input::Query,
     output::{FloatArray, shaped},
-    pickle::{self, Kind, Reduced},
+    pickle::{self, PickledKind, Reduced},
 };
 
 /// A piecewise polynomial in one variable, on increasing knots: the base of the monotone interpolants.
@@ -227,7 +227,7 @@ impl PiecewisePolynomial {
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
-        pickle::reduce(py, Kind::Function, |bytes| {
+        pickle::reduce(py, PickledKind::Function, |bytes| {
             postcard::to_extend(&(self.layout.as_ref(), self.fits.as_ref()), bytes)
         })
     }

@@ -53,23 +53,26 @@ fn offsets_of(x: &Array<'_>, y: &Array<'_>, offsets: Option<Offsets>) -> PyResul
 
 /// `kind`.
 #[derive(Clone, Copy, PartialEq)]
-pub(crate) enum Kind {
+pub(crate) enum MonotoneKind {
     Cubic,
     Quartic,
     Quintic,
 }
 
-const KINDS: [(&str, Kind); 3] =
-    [("cubic", Kind::Cubic), ("quintic", Kind::Quintic), ("quartic", Kind::Quartic)];
+const KINDS: [(&str, MonotoneKind); 3] = [
+    ("cubic", MonotoneKind::Cubic),
+    ("quintic", MonotoneKind::Quintic),
+    ("quartic", MonotoneKind::Quartic),
+];
 
-fn family(object: &Bound<'_, PyAny>) -> PyResult<Kind> {
+fn family(object: &Bound<'_, PyAny>) -> PyResult<MonotoneKind> {
     let name = text(object).ok_or_else(|| {
         PyTypeError::new_err(format!("kind must be a string, got {}", kind(object)))
     })?;
     choose("kind", &name, &KINDS)
 }
 
-impl Kind {
+impl MonotoneKind {
     /// Refuse an option that the kind lacks, instead of ignoring it, where it is `given`.
     fn allows(self, argument: &str, what: &str, given: bool, kinds: &[Self]) -> PyResult<()> {
         if !given || kinds.contains(&self) {
@@ -162,7 +165,7 @@ fn min_slope(object: &Bound<'_, PyAny>) -> PyResult<Option<f64>> {
 /// array([1., 2.])
 #[pyfunction]
 #[pyo3(
-    signature = (x, y, *, kind=Kind::Cubic, offsets=None, convex=ConvexOption::Nowhere, slopes=None,
+    signature = (x, y, *, kind=MonotoneKind::Cubic, offsets=None, convex=ConvexOption::Nowhere, slopes=None,
                  ends=None, layer=None,
                  min_slope=None, energy=None, clip=false, shape=None,
                  extrapolate=Some(Extrapolation::LINEAR)),
@@ -176,7 +179,7 @@ pub(crate) fn fit_many_monotone(
     py: Python<'_>,
     x: &Bound<'_, PyAny>,
     y: &Bound<'_, PyAny>,
-    #[pyo3(from_py_with = family)] kind: Kind,
+    #[pyo3(from_py_with = family)] kind: MonotoneKind,
     offsets: Option<Offsets>,
     #[pyo3(from_py_with = options::convex)] convex: ConvexOption,
     #[pyo3(from_py_with = slopes)] slopes: Option<SlopesOption>,
@@ -191,18 +194,18 @@ pub(crate) fn fit_many_monotone(
     let (x, y) = (array("x", x)?, array("y", y)?);
     let ragged = offsets.is_some();
     let bounds = offsets_of(&x, &y, offsets)?;
-    let (cubic, quintic) = (&[Kind::Cubic][..], &[Kind::Quintic][..]);
+    let (cubic, quintic) = (&[MonotoneKind::Cubic][..], &[MonotoneKind::Quintic][..]);
     kind.allows("convex", "convex", !matches!(convex, ConvexOption::Nowhere), cubic)?;
     kind.allows("ends", "ends", ends.is_some(), cubic)?;
     kind.allows("layer", "layer", layer.is_some(), cubic)?;
     kind.allows("min_slope", "min_slope", min_slope.is_some(), cubic)?;
     kind.allows("energy", "energy", energy.is_some(), quintic)?;
     kind.allows("clip", "clip=True", clip, quintic)?;
-    kind.allows("shape", "shape", shape.is_some(), &[Kind::Quartic])?;
+    kind.allows("shape", "shape", shape.is_some(), &[MonotoneKind::Quartic])?;
     let optimal = matches!(slopes, Some(SlopesOption::Optimal));
     kind.allows("slopes", "slopes='optimal'", optimal, quintic)?;
     let named = matches!(slopes, Some(SlopesOption::FritschButland));
-    let paper = [Kind::Quintic, Kind::Quartic];
+    let paper = [MonotoneKind::Quintic, MonotoneKind::Quartic];
     kind.allows("slopes", "slopes='fritsch-butland'", named, &paper)?;
     let given = match slopes.as_ref().and_then(SlopesOption::given) {
         // Rows of two axes may have their slopes in common.
@@ -223,12 +226,12 @@ pub(crate) fn fit_many_monotone(
     let (x, y) = (x.values(), y.values());
     let of = |from: usize, to: usize| match (&slopes, &given, kind) {
         (_, Some(given), _) => Slopes::Given(given[from..to].to_vec()),
-        (Some(SlopesOption::Optimal), ..) | (None, _, Kind::Quintic) => Slopes::Optimal,
+        (Some(SlopesOption::Optimal), ..) | (None, _, MonotoneKind::Quintic) => Slopes::Optimal,
         _ => Slopes::FritschButland,
     };
     let extrapolate = extrapolate.unwrap_or_default();
     let fits = match kind {
-        Kind::Cubic => Fits::Cubic(fit_rows(py, &bounds, |k, [from, to], go_on| {
+        MonotoneKind::Cubic => Fits::Cubic(fit_rows(py, &bounds, |k, [from, to], go_on| {
             let default = CubicOptions::default();
             let options = CubicOptions {
                 ends: ends.clone().unwrap_or(default.ends),
@@ -240,12 +243,12 @@ pub(crate) fn fit_many_monotone(
             };
             monotone::MonotoneCubic::new_with(&x[from..to], &y[from..to], &options, go_on)
         })?),
-        Kind::Quintic => Fits::Quintic(fit_rows(py, &bounds, |_, [from, to], go_on| {
+        MonotoneKind::Quintic => Fits::Quintic(fit_rows(py, &bounds, |_, [from, to], go_on| {
             let fairness = energy.unwrap_or_default();
             let options = QuinticOptions { slopes: of(from, to), fairness, clip, extrapolate };
             monotone::MonotoneQuintic::new_with(&x[from..to], &y[from..to], &options, go_on)
         })?),
-        Kind::Quartic => Fits::Quartic(fit_rows(py, &bounds, |_, [from, to], _| {
+        MonotoneKind::Quartic => Fits::Quartic(fit_rows(py, &bounds, |_, [from, to], _| {
             let (slopes, shape) = (of(from, to), shape.clone().unwrap_or_default());
             let options = QuarticOptions { slopes, shape, extrapolate };
             monotone::MonotoneQuartic::new(&x[from..to], &y[from..to], &options)

@@ -24,7 +24,7 @@ use crate::{
     error::monotone_error,
     input::Offsets,
     output::{FloatArray, shaped},
-    pickle::{self, Kind, Reduced},
+    pickle::{self, PickledKind, Reduced},
 };
 
 /// Functions of many rows, each with its own knots: the base of `MonotoneRows`.
@@ -212,7 +212,7 @@ impl PiecewiseRows {
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
-        pickle::reduce(py, Kind::Rows, |bytes| {
+        pickle::reduce(py, PickledKind::Rows, |bytes| {
             postcard::to_extend(&(self.ragged, self.fits.as_ref()), bytes)
         })
     }

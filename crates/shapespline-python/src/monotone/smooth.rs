@@ -15,7 +15,7 @@ use crate::{
     error::{invalid, must},
     input::{array, float, kind, reworded, text},
     options::unknown,
-    pickle::{self, Kind, Reduced},
+    pickle::{self, PickledKind, Reduced},
 };
 
 /// How noisy data were smoothed.
@@ -89,7 +89,7 @@ impl MonotoneSmoothing {
     }
 
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
-        pickle::reduce_whole(slf, Kind::MonotoneSmoothing)
+        pickle::reduce_whole(slf, PickledKind::MonotoneSmoothing)
     }
 }
 

@@ -23,7 +23,7 @@ use crate::{
     asked::Asked,
     curve::boundary_object,
     error::subject_error,
-    pickle::{self, Kind, Reduced},
+    pickle::{self, PickledKind, Reduced},
     work::{GoOn, interrupted, interruptible},
 };
 
@@ -326,7 +326,7 @@ impl ShapeReport {
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
-        pickle::reduce(py, Kind::Report, |bytes| pickle::write_report(self, bytes))
+        pickle::reduce(py, PickledKind::Report, |bytes| pickle::write_report(self, bytes))
     }
 
     fn __copy__(slf: Py<Self>) -> Py<Self> {

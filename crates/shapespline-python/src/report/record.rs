@@ -7,7 +7,7 @@ use std::hash::{Hash, Hasher};
 use pyo3::prelude::*;
 use shapespline::criteria::Record;
 
-use crate::pickle::{self, Kind, Reduced};
+use crate::pickle::{self, PickledKind, Reduced};
 
 /// One criterion on one segment: whether it applies, whether it holds, and by how much.
 ///
@@ -102,6 +102,6 @@ impl ShapeRecord {
     }
 
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
-        pickle::reduce_whole(slf, Kind::ShapeRecord)
+        pickle::reduce_whole(slf, PickledKind::ShapeRecord)
     }
 }
