@@ -72,7 +72,7 @@ fn main() {
             steps += found.iterations;
             most = most.max(found.iterations);
             gap = gap.max(found.kkt_residual);
-            within += usize::from(found.converged && found.solver == Solver::InteriorPoint);
+            within += usize::from(found.converged && found.solver == SolverKind::InteriorPoint);
         }
         println!(
             "{name:>22} {:>12.0} {:>6.1} {most:>5} {gap:>9.1e} {:>8.1}%",

@@ -7,7 +7,7 @@
 //! is one of the piece's own Bernstein coefficients.
 
 use crate::piecewise::PiecewisePolynomial;
-use crate::spline::{Kind, MonotoneSpline};
+use crate::spline::{MonotoneKind, MonotoneSpline};
 
 /// What second derivatives at a knot may differ by and count as one, relative to the largest of the two pieces.
 const ALIKE: f64 = 1e-9;
@@ -32,12 +32,12 @@ impl MonotoneSpline {
         let last = self.x.len() - 1;
         let multiplicity = |i: usize| match &self.kind {
             _ if i == 0 || i == last => degree + 1,
-            Kind::Cubic { z } => {
+            MonotoneKind::Cubic { z } => {
                 let (before, after) = (z[i - 1], z[i]);
                 let size = before.iter().chain(&after).fold(0.0f64, |size, z| size.max(z.abs()));
                 1 + usize::from((before[1] - after[0]).abs() > ALIKE * size)
             }
-            Kind::Quartic { .. } | Kind::Quintic { .. } => 3,
+            MonotoneKind::Quartic { .. } | MonotoneKind::Quintic { .. } => 3,
         };
         // The knots by their numbers.
         let numbers: Vec<usize> =
@@ -64,9 +64,9 @@ impl MonotoneSpline {
         let to_x = self.units.spacing();
         let [a, b] = others.map(|i| to_x.scale(self.x[i] - self.x[knot]));
         let second = match &self.kind {
-            Kind::Cubic { z } => z.get(knot).map_or(0.0, |z| z[0]),
-            Kind::Quintic { s } => s[knot],
-            Kind::Quartic { .. } => 0.0,
+            MonotoneKind::Cubic { z } => z.get(knot).map_or(0.0, |z| z[0]),
+            MonotoneKind::Quintic { s } => s[knot],
+            MonotoneKind::Quartic { .. } => 0.0,
         };
         let change = self.d[knot] * ((a + b) / n) + second * (a * b / (n * (n - 1.0)));
         self.y[knot] + self.units.y().scale(change)

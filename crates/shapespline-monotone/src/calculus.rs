@@ -8,7 +8,7 @@ use crate::data::{PowerOfTwo, exponent};
 use crate::extrapolation::{Continuation, Extrapolation};
 use crate::integrals::{Pieces, whole};
 use crate::piecewise::PiecewisePolynomial;
-use crate::spline::{Kind, MonotoneSpline};
+use crate::spline::{MonotoneKind, MonotoneSpline};
 
 impl MonotoneSpline {
     /// Bernstein coefficients of the first derivative, scaled; its ends are the slopes to the last bit.
@@ -17,16 +17,16 @@ impl MonotoneSpline {
         let (d0, d1) = (self.d[i], self.d[i + 1]);
         let secant = self.units.rise().scale(self.y[i + 1] - self.y[i]) / h;
         match &self.kind {
-            Kind::Quartic { e } => {
+            MonotoneKind::Quartic { e } => {
                 let e = self.units.rise().scale(e[i]) / h;
                 ([d0, 2.0 * secant - d0 + e, 2.0 * secant - d1 - e, d1, 0.0], 3)
             }
-            Kind::Cubic { z } => {
+            MonotoneKind::Cubic { z } => {
                 // From both ends: they differ by rounding.
                 let [z0, z1] = z[i];
                 ([d0, 0.5 * ((d0 + 0.5 * (h * z0)) + (d1 - 0.5 * (h * z1))), d1, 0.0, 0.0], 2)
             }
-            Kind::Quintic { s } => {
+            MonotoneKind::Quintic { s } => {
                 let (b, c) = (d0 + 0.25 * (h * s[i]), d1 - 0.25 * (h * s[i + 1]));
                 ([d0, b, 5.0 * secant - ((d0 + b) + (c + d1)), c, d1], 4)
             }
@@ -39,16 +39,16 @@ impl MonotoneSpline {
         let dy = self.units.rise().scale(self.y[i + 1] - self.y[i]);
         let (m0, m1) = (h * self.d[i], h * self.d[i + 1]);
         match &self.kind {
-            Kind::Quartic { e } => {
+            MonotoneKind::Quartic { e } => {
                 let e = self.units.rise().scale(e[i]);
                 let (b, c) = (2.0 * dy - m0 + e, 2.0 * dy - m1 - e);
                 ([3.0 * (b - m0), 3.0 * (c - b), 3.0 * (m1 - c), 0.0], 2)
             }
-            Kind::Cubic { z } => {
+            MonotoneKind::Cubic { z } => {
                 let [k0, k1] = z[i].map(|z| h * (h * z));
                 ([k0, k1, 0.0, 0.0], 1)
             }
-            Kind::Quintic { s } => {
+            MonotoneKind::Quintic { s } => {
                 let (k0, k1) = (h * (h * s[i]), h * (h * s[i + 1]));
                 let (b, d) = (m0 + 0.25 * k0, m1 - 0.25 * k1);
                 let c = 5.0 * dy - ((m0 + b) + (d + m1));
@@ -90,9 +90,11 @@ impl MonotoneSpline {
     /// The second derivatives at the ends of segment i where they are stored: to the last bit, so that neighbours agree.
     fn stored_seconds(&self, i: usize) -> Option<[f64; 2]> {
         match &self.kind {
-            Kind::Quintic { s } => Some([i, i + 1].map(|j| self.units.derivative_out(s[j], 2))),
-            Kind::Cubic { z } => Some(z[i].map(|z| self.units.derivative_out(z, 2))),
-            Kind::Quartic { .. } => None,
+            MonotoneKind::Quintic { s } => {
+                Some([i, i + 1].map(|j| self.units.derivative_out(s[j], 2)))
+            }
+            MonotoneKind::Cubic { z } => Some(z[i].map(|z| self.units.derivative_out(z, 2))),
+            MonotoneKind::Quartic { .. } => None,
         }
     }
 
@@ -118,7 +120,7 @@ impl MonotoneSpline {
             return s[usize::from(t == 1.0)];
         }
         let (c, degree) = self.unscaled_coefficients(i, nu);
-        let value = if nu == 1 && matches!(self.kind, Kind::Cubic { .. }) {
+        let value = if nu == 1 && matches!(self.kind, MonotoneKind::Cubic { .. }) {
             // What rounding leaves of a slope of the wrong sign is none.
             let rises = self.y[i + 1] >= self.y[i];
             let value = bernstein::quadratic([c[0], c[1], c[2]], t);

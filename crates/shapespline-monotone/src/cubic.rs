@@ -7,7 +7,7 @@ use crate::data::{Data, PowerOfTwo, Units, out_of_range, parts_mut};
 use crate::energy::Fairness;
 use crate::extrapolation::{Continuation, Extrapolation};
 use crate::interrupt::{GoOn, ask};
-use crate::quintic::{Diagnostics, Solver};
+use crate::quintic::{Diagnostics, SolverKind};
 use crate::smooth::Smoothing;
 use crate::spline::MonotoneSpline;
 use std::ops::{ControlFlow, Deref};
@@ -313,7 +313,7 @@ impl Task {
         let found = problem.solve(None, go_on)?;
         let (least, mut gaps) = problem.certificate(&found.m, first..first + x.len() - 1);
         let gap: f64 = gaps.iter().sum();
-        let Made { pieces, energy, solves, converged } =
+        let CubicFit { pieces, energy, solves, converged } =
             match std::mem::replace(&mut self.form, Form::Monotone) {
                 Form::Monotone => self.monotone([x, y], found.m, go_on)?,
                 Form::Asked(asked) => {
@@ -330,7 +330,7 @@ impl Task {
         ask(go_on)?;
         let out = |energy: f64| units.energy_out(Fairness::Bending, energy);
         let diagnostics = Diagnostics {
-            solver: Solver::Newton,
+            solver: SolverKind::Newton,
             iterations: found.solves + solves,
             active: pieces.level.len(),
             kkt_residual: if gap > 0.0 { gap / least } else { 0.0 },
@@ -356,19 +356,25 @@ impl Task {
         data: [&[f64]; 2],
         m: Vec<f64>,
         go_on: GoOn<'_>,
-    ) -> Result<Made, MonotoneError> {
+    ) -> Result<CubicFit, MonotoneError> {
         let Self { problem, first, units, layer, .. } = self;
         let Layered { m, layers, solves, converged } = layered(problem, m, *layer, go_on)?;
         let (pieces, energy) = Pieces::new(problem, *units, data, &m, layers.as_ref(), *first);
-        Ok(Made { pieces, energy, solves, converged })
+        Ok(CubicFit { pieces, energy, solves, converged })
     }
 
     /// Pieces that are convex and concave where that is asked.
-    fn bent(&self, data: [&[f64]; 2], found: &Slopes, signs: &[i8], straight: Vec<bool>) -> Made {
+    fn bent(
+        &self,
+        data: [&[f64]; 2],
+        found: &Slopes,
+        signs: &[i8],
+        straight: Vec<bool>,
+    ) -> CubicFit {
         let Self { problem, first, units, layer, .. } = self;
         let profiles = Profiles::new(problem, found, signs, straight, *layer);
         let (pieces, energy) = Pieces::bent(problem, *units, data, found, &profiles, *first);
-        Made { pieces, energy, solves: found.solves, converged: found.converged }
+        CubicFit { pieces, energy, solves: found.solves, converged: found.converged }
     }
 }
 
@@ -379,7 +385,7 @@ struct Layered {
     converged: bool,
 }
 
-struct Made {
+struct CubicFit {
     pieces: Pieces,
     energy: f64,
     solves: usize,

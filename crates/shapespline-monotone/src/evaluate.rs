@@ -2,12 +2,12 @@
 
 //! Values and derivatives of the interpolants, one or many: segments first, then values, on all threads.
 
+use crate::chunked::{self, TILE};
 use crate::extrapolation::{Continuation, Extrapolation};
 use crate::locate::Searcher;
 use crate::periodic;
-use crate::record::Record;
+use crate::segment_polynomial::SegmentPolynomial;
 use crate::spline::MonotoneSpline;
-use crate::tiles::{self, TILE};
 use std::array;
 
 /// Tiles that one thread works through at least.
@@ -44,7 +44,7 @@ impl MonotoneSpline {
     ) -> Vec<f64> {
         let mode = extrapolate.unwrap_or(self.extrapolate);
         let search = self.searcher(queries.len() > TILE);
-        tiles::answers(queries, TILES, |q| self.tile(search, q, nu, mode))
+        chunked::answers(queries, TILES, |q| self.tile(search, q, nu, mode))
     }
 
     /// [`Self::evaluate_many`] into a slice. `out` must have the queries' length; extra entries of the longer are left
@@ -58,7 +58,7 @@ impl MonotoneSpline {
     ) {
         let mode = extrapolate.unwrap_or(self.extrapolate);
         let search = self.searcher(queries.len().min(out.len()) > TILE);
-        tiles::fill(queries, out, TILES, |q, out| {
+        chunked::fill(queries, out, TILES, |q, out| {
             out.copy_from_slice(&self.tile(search, q, nu, mode)[..q.len()]);
         });
     }
@@ -91,7 +91,7 @@ impl MonotoneSpline {
         let mut segments = [0; TILE];
         search.tile(queries, sorted, &mut segments);
         let value = |i: usize, x: f64| {
-            let record: &Record = &self.records[i];
+            let record: &SegmentPolynomial = &self.records[i];
             record.value(record.local(x))
         };
         if inside && nu == 0 {

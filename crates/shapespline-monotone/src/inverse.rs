@@ -3,18 +3,18 @@
 //! The inverse function of strictly monotone data: quantiles of a distribution function, and the like.
 
 use crate::MonotoneError;
+use crate::chunked::{self, TILE};
 use crate::extrapolation::{Continuation, Extrapolation};
 use crate::locate::{Locator, Searcher};
 use crate::periodic::wrapped;
-use crate::record::Record;
+use crate::segment_polynomial::SegmentPolynomial;
 use crate::spline::MonotoneSpline;
-use crate::tiles::{self, TILE};
 
-mod lanes;
-mod run;
+mod batch;
+mod sorted;
 
-use lanes::Lanes;
-use run::Room;
+use batch::Batch;
+use sorted::Room;
 
 /// Tiles that one thread works through at least.
 const TILES: usize = 64;
@@ -81,7 +81,7 @@ impl MonotoneSpline {
     pub fn inverse_many(&self, queries: &[f64]) -> Result<Vec<f64>, MonotoneError> {
         let inverse = self.inverted()?;
         let search = self.inverse_searcher(inverse, queries.len() > TILE);
-        Ok(tiles::answers(queries, TILES, |q| self.inverse_tile(search, inverse.falling, q)))
+        Ok(chunked::answers(queries, TILES, |q| self.inverse_tile(search, inverse.falling, q)))
     }
 
     /// [`Self::inverse_many`] into a slice. `out` must have the queries' length; extra entries of the longer are left
@@ -92,7 +92,7 @@ impl MonotoneSpline {
     pub fn inverse_into(&self, queries: &[f64], out: &mut [f64]) -> Result<(), MonotoneError> {
         let inverse = self.inverted()?;
         let search = self.inverse_searcher(inverse, queries.len().min(out.len()) > TILE);
-        tiles::fill(queries, out, TILES, |q, out| {
+        chunked::fill(queries, out, TILES, |q, out| {
             let found = self.inverse_tile(search, inverse.falling, q);
             out.copy_from_slice(&found[..q.len()]);
         });
@@ -156,7 +156,7 @@ impl MonotoneSpline {
         if sorted {
             let (mut out, mut room) = ([0.0; TILE], Room::default());
             let done = search.runs(&keys[..queries.len()], RUNS, |i, run| {
-                run::invert(
+                sorted::invert(
                     self.record(i),
                     self.x[i + 1],
                     &y[run.clone()],
@@ -170,7 +170,7 @@ impl MonotoneSpline {
         }
         let mut segments = [0; TILE];
         search.tile(&keys[..queries.len()], sorted, &mut segments);
-        let mut lanes = Lanes::new(|j| self.record(segments[j]), &y);
+        let mut lanes = Batch::new(|j| self.record(segments[j]), &y);
         lanes.solve();
         std::array::from_fn(|j| {
             // Queries outside the data fail the second test.
@@ -228,7 +228,7 @@ impl MonotoneSpline {
 
 /// t in [0, 1] with f(t) = y: Newton in a bracket, from a start that is in it or from the chord.
 #[inline]
-fn local(record: &Record, y: f64, start: f64) -> f64 {
+fn local(record: &SegmentPolynomial, y: f64, start: f64) -> f64 {
     let dy = record.y[1] - record.y[0];
     let rising = dy > 0.0;
     let (from0, from1) = (y - record.y[0], y - record.y[1]);

@@ -24,6 +24,9 @@
 //! bounds λ) and the box form of the program are those of the project's specification. Slopes: Fritsch and Butland,
 //! *SIAM J. Sci. Stat. Comput.* 5 (1984) 300–304.
 //!
+//! Symbols and terms:
+//! [notation](https://github.com/shapespline/shapespline/blob/main/python/docs/notation.md).
+//!
 //! ```
 //! use shapespline_monotone::{CubicOptions, MonotoneCubic};
 //! let f = MonotoneCubic::new(&[0.0, 1.0, 2.0, 5.0], &[0.0, 0.1, 3.0, 3.2], &CubicOptions::default())?;
@@ -39,8 +42,10 @@
 mod bernstein;
 mod beyond;
 pub mod bezier_like;
+mod box_qp_blocks;
 mod bspline;
 mod calculus;
+mod chunked;
 mod cubic;
 mod data;
 mod energy;
@@ -53,26 +58,24 @@ mod interrupt;
 mod inverse;
 mod locate;
 mod many;
+#[cfg(feature = "nlopt")]
+pub mod nlopt_reference;
 mod optimal;
+mod overlapping_blocks;
 mod periodic;
 mod piecewise;
 mod program;
 mod quartic;
 mod quartic_form;
 mod quintic;
-mod record;
 #[cfg(test)]
 mod reference;
 mod region;
 mod roots;
-#[cfg(feature = "nlopt")]
-pub mod second_opinion;
+mod segment_polynomial;
 mod slopes;
 mod smooth;
 mod spline;
-mod stretches;
-mod tiles;
-mod windows;
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
@@ -86,7 +89,7 @@ pub use error::MonotoneError;
 pub use extrapolation::{Continuation, Extrapolation};
 pub use many::{MonotoneMany, fit_columns, fit_rows};
 pub use piecewise::PiecewisePolynomial;
-pub use quartic::{MonotoneQuartic, QuarticOptions, Shape};
-pub use quintic::{Diagnostics, MonotoneQuintic, QuinticOptions, Slopes, Solver};
+pub use quartic::{MonotoneQuartic, QuarticOptions, ShapeParameters};
+pub use quintic::{Diagnostics, MonotoneQuintic, QuinticOptions, Slopes, SolverKind};
 pub use smooth::{PenaltyChoice, SmoothOptions, Smoothing, smooth_monotone, smooth_monotone_with};
 pub use spline::MonotoneSpline;

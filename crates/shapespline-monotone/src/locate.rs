@@ -2,7 +2,7 @@
 
 //! Finding the segments of queries: a table of equal buckets over the knots, built at the first large request.
 
-use crate::tiles::TILE;
+use crate::chunked::TILE;
 use once_cell::race::OnceBox;
 use std::ops::Range;
 

@@ -201,7 +201,7 @@ fn run(
         // Nothing is free: rounding alone can have hidden that this is monotone.
         return result(&problem.inside, data);
     }
-    let mut found = Found { gap: f64::INFINITY, ..Found::default() };
+    let mut found = Blend { gap: f64::INFINITY, ..Blend::default() };
     found.add(problem, data);
     problem.start(MASS);
     let mut steps = 1;
@@ -223,7 +223,7 @@ fn run(
 
 /// The result in the making: a convex combination of iterates.
 #[derive(Default)]
-struct Found {
+struct Blend {
     nodes: Vec<[f64; 2]>,
     /// The sum of the iterates' weights: 1 when it is done. Until one has a weight, the best one.
     weight: f64,
@@ -231,7 +231,7 @@ struct Found {
     active: usize,
 }
 
-impl Found {
+impl Blend {
     /// Add the current point, made feasible, with a weight that grows from 0 to 1 as it gets good enough: so the result
     /// does not jump where another number of steps becomes enough.
     fn add(&mut self, problem: &mut Problem, data: &Data) {

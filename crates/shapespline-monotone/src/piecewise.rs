@@ -4,12 +4,12 @@
 
 use crate::bernstein;
 use crate::beyond::Beyond;
+use crate::chunked::{self, TILE};
 use crate::extrapolation::{Continuation, Extrapolation};
 use crate::integrals::{Lazy, Pieces, whole};
 use crate::locate::Locator;
 use crate::periodic;
 use crate::roots::{Bernstein, Merged, verified};
-use crate::tiles::{self, TILE};
 
 /// Tiles that one thread works through at least.
 const TILES: usize = 128;
@@ -118,7 +118,7 @@ impl PiecewisePolynomial {
     ) {
         let mode = extrapolate.unwrap_or(self.extrapolate);
         let search = self.locator.searcher(&self.x, queries.len().min(out.len()) > TILE);
-        tiles::fill(queries, out, TILES, |q, out| {
+        chunked::fill(queries, out, TILES, |q, out| {
             let mut segments = [0; TILE];
             search.tile(q, q.is_sorted(), &mut segments);
             for ((value, &x), &i) in out.iter_mut().zip(q).zip(&segments) {

@@ -6,18 +6,18 @@ use crate::MonotoneError;
 use crate::Slopes;
 use crate::data::{Data, PART, Units, check_finite, first};
 use crate::extrapolation::Extrapolation;
-use crate::spline::{Cached, Kind, MonotoneSpline};
+use crate::spline::{Cached, MonotoneKind, MonotoneSpline};
 use std::ops::Deref;
 
-mod pass;
+mod assemble;
 mod scale;
 
-use pass::{Made, Pass};
+use assemble::{Assembled, Assembly};
 
 /// Starting values of the shape parameters, non-negative.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub enum Shape {
+pub enum ShapeParameters {
     /// α = β everywhere. With 1 (the default) the curve is the cubic through the ends with their slopes where that is
     /// monotone, so that quadratics and cubics with exact slopes are reproduced, and the error is of order three with
     /// Fritsch and Butland's; the paper starts from 3, which is of order two and bends more.
@@ -31,7 +31,7 @@ pub enum Shape {
     },
 }
 
-impl Shape {
+impl ShapeParameters {
     /// (α, β) of segment i.
     #[inline]
     fn at(&self, i: usize) -> (f64, f64) {
@@ -46,7 +46,7 @@ impl Shape {
     }
 }
 
-impl Default for Shape {
+impl Default for ShapeParameters {
     fn default() -> Self {
         Self::Uniform(1.0)
     }
@@ -58,7 +58,7 @@ pub struct QuarticOptions {
     /// Nodal slopes. [`Slopes::Optimal`] does not exist for the quartic.
     pub slopes: Slopes,
     /// Starting values of α and β.
-    pub shape: Shape,
+    pub shape: ShapeParameters,
     /// What it is outside the data.
     pub extrapolate: Extrapolation,
 }
@@ -72,7 +72,7 @@ pub struct QuarticOptions {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct MonotoneQuartic {
     spline: MonotoneSpline,
-    shape: Shape,
+    shape: ShapeParameters,
     scale: Vec<f64>,
 }
 
@@ -108,16 +108,16 @@ impl MonotoneQuartic {
             }
         };
         match &options.shape {
-            Shape::Uniform(a) => check_shape("shape", &[*a])?,
-            Shape::Segments { alpha, beta } => {
+            ShapeParameters::Uniform(a) => check_shape("shape", &[*a])?,
+            ShapeParameters::Segments { alpha, beta } => {
                 for (argument, values) in [("alpha", alpha), ("beta", beta)] {
                     check_length(argument, values, n)?;
                     check_shape(argument, values)?;
                 }
             }
         }
-        let pass = Pass { x, y, units, given, shape: &options.shape };
-        let Made { d, e, scale, records, sound } = pass.make();
+        let pass = Assembly { x, y, units, given, shape: &options.shape };
+        let Assembled { d, e, scale, records, sound } = pass.make();
         if !sound {
             // A spacing or a secant out of range, or a slope in the data's units: what and where.
             Data::new(x, y)?;
@@ -136,7 +136,7 @@ impl MonotoneQuartic {
             points: None,
             d,
             units,
-            kind: Kind::Quartic { e },
+            kind: MonotoneKind::Quartic { e },
             records,
             extrapolate: options.extrapolate,
             cached: Cached::default(),
@@ -171,7 +171,7 @@ impl MonotoneQuartic {
     /// `∫ f''² dx`; +∞ if it overflows. O(N).
     #[must_use]
     pub fn bending_energy(&self) -> f64 {
-        let Kind::Quartic { e } = &self.spline.kind else { return f64::NAN };
+        let MonotoneKind::Quartic { e } = &self.spline.kind else { return f64::NAN };
         let (x, y) = (self.x(), self.y());
         let mut sum = 0.0;
         for (i, e) in e.iter().enumerate() {

@@ -3,18 +3,18 @@
 //! The C² monotone quintic: the paper's program, and the fairest over slopes as well.
 
 use crate::MonotoneError;
+use crate::box_qp_blocks;
 use crate::data::{Data, check_finite, parts};
 use crate::energy::{self, Fairness, is_flat};
 use crate::extrapolation::Extrapolation;
 use crate::given;
 use crate::interrupt::{GoOn, ask};
 use crate::optimal::{self, Optimum, coefficients};
+use crate::overlapping_blocks;
 use crate::program::admissible_slopes;
 use crate::quartic_form::certified_nonnegative;
 use crate::slopes;
-use crate::spline::{Kind, MonotoneSpline};
-use crate::stretches;
-use crate::windows;
+use crate::spline::{MonotoneKind, MonotoneSpline};
 use std::ops::{ControlFlow, Deref};
 
 /// Nodal slopes.
@@ -58,7 +58,7 @@ impl Default for QuinticOptions {
 /// Which iteration made a [`MonotoneQuintic`] or a [`crate::MonotoneCubic`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub enum Solver {
+pub enum SolverKind {
     /// The primal–dual active set on the paper's tridiagonal box program (slopes of Fritsch and Butland).
     ActiveSet,
     /// The interior-point iteration on the exact cone of monotone quintics (optimal and given slopes).
@@ -72,7 +72,7 @@ pub enum Solver {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Diagnostics {
     /// The method.
-    pub solver: Solver,
+    pub solver: SolverKind,
     /// Linear solves.
     pub iterations: usize,
     /// Conditions that hold with equality.
@@ -144,7 +144,7 @@ impl MonotoneQuintic {
         let fairness = options.fairness;
         let (d, s, mut diagnostics) = match &options.slopes {
             Slopes::FritschButland => {
-                paper(&data, slopes::fritsch_butland(&data), fairness, go_on)?
+                with_fixed_slopes(&data, slopes::fritsch_butland(&data), fairness, go_on)?
             }
             Slopes::Given(given) => {
                 if given.len() != x.len() {
@@ -219,7 +219,7 @@ impl MonotoneQuintic {
 
     fn parameters(&self, beta: bool) -> Vec<f64> {
         let (x, y, d, units) = (self.x(), self.y(), &self.spline.d, self.spline.units);
-        let Kind::Quintic { s } = &self.spline.kind else { return Vec::new() };
+        let MonotoneKind::Quintic { s } = &self.spline.kind else { return Vec::new() };
         (0..x.len() - 1)
             .map(|i| {
                 let h = self.spline.scaled_length(i);
@@ -238,7 +238,7 @@ impl MonotoneQuintic {
 type Fit = (Vec<f64>, Vec<f64>, Diagnostics);
 
 /// The paper's program for given slopes.
-fn paper(
+fn with_fixed_slopes(
     data: &Data,
     mut d: Vec<f64>,
     fairness: Fairness,
@@ -246,9 +246,9 @@ fn paper(
 ) -> Result<Fit, MonotoneError> {
     ask(go_on)?;
     admissible_slopes(data, &mut d);
-    let solution = stretches::solve(data, &d, fairness, go_on)?;
+    let solution = box_qp_blocks::solve(data, &d, fairness, go_on)?;
     let diagnostics = Diagnostics {
-        solver: Solver::ActiveSet,
+        solver: SolverKind::ActiveSet,
         iterations: solution.iterations,
         active: solution.active,
         kkt_residual: solution.kkt_residual,
@@ -267,13 +267,14 @@ fn with_optimal_slopes(
     fairness: Fairness,
     go_on: GoOn<'_>,
 ) -> Result<Fit, MonotoneError> {
-    let Some(best) = windows::optimise(data, fairness, None, go_on) else {
+    let Some(best) = overlapping_blocks::optimise(data, fairness, None, go_on) else {
         return Err(MonotoneError::Interrupted);
     };
     let certified = certified(data, &best.d, &best.s);
     if !(best.converged && certified) {
         let energy = energy::total(data, fairness, &best.d, &best.s);
-        let (d, s, diagnostics) = paper(data, slopes::fritsch_butland(data), fairness, go_on)?;
+        let (d, s, diagnostics) =
+            with_fixed_slopes(data, slopes::fritsch_butland(data), fairness, go_on)?;
         let other = energy::total(data, fairness, &d, &s);
         if !(certified && energy <= other) {
             // How far that is from the optimum: the bound is the iteration's.
@@ -300,7 +301,9 @@ fn with_given_slopes(
         return Ok(fit(best, certified));
     }
     let possible = given::possible(data, given, options.clip, go_on)?;
-    let Some(best) = windows::optimise(data, fairness, Some(possible.prescribed()), go_on) else {
+    let Some(best) =
+        overlapping_blocks::optimise(data, fairness, Some(possible.prescribed()), go_on)
+    else {
         return Err(MonotoneError::Interrupted);
     };
     let certified = certified(data, &best.d, &best.s);
@@ -310,7 +313,7 @@ fn with_given_slopes(
 
 fn fit(best: Optimum, certified: bool) -> Fit {
     let diagnostics = Diagnostics {
-        solver: Solver::InteriorPoint,
+        solver: SolverKind::InteriorPoint,
         iterations: best.steps,
         active: best.active,
         kkt_residual: best.gap,

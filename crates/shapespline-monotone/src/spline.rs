@@ -9,13 +9,13 @@ use crate::integrals::Lazy;
 use crate::inverse::Inverse;
 use crate::locate::Locator;
 use crate::piecewise::PiecewisePolynomial;
-use crate::record::{self, Record, TILE};
+use crate::segment_polynomial::{self, SegmentPolynomial, TILE};
 use once_cell::race::OnceBox;
 
 /// What the pieces are beyond their end values and slopes.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub(crate) enum Kind {
+pub(crate) enum MonotoneKind {
     /// `e = ⅔(αm₀ − βm₁)` of every segment, in units of y.
     Quartic { e: Vec<f64> },
     /// Second derivatives at the knots, scaled.
@@ -52,8 +52,8 @@ pub struct MonotoneSpline {
     /// the range of double precision where values and integrals do not.
     pub(crate) d: Vec<f64>,
     pub(crate) units: Units,
-    pub(crate) kind: Kind,
-    pub(crate) records: Vec<Record>,
+    pub(crate) kind: MonotoneKind,
+    pub(crate) records: Vec<SegmentPolynomial>,
     pub(crate) extrapolate: Extrapolation,
     pub(crate) cached: Cached,
 }
@@ -80,8 +80,8 @@ struct Stored {
     y: Vec<f64>,
     points: Option<Box<Points>>,
     d: Vec<f64>,
-    kind: Kind,
-    records: Vec<Record>,
+    kind: MonotoneKind,
+    records: Vec<SegmentPolynomial>,
     extrapolate: Extrapolation,
 }
 
@@ -99,9 +99,9 @@ impl TryFrom<Stored> for MonotoneSpline {
     fn try_from(s: Stored) -> Result<Self, String> {
         let n = s.x.len();
         let extra = match &s.kind {
-            Kind::Quartic { e } => e.len() + 1,
-            Kind::Quintic { s } => s.len(),
-            Kind::Cubic { z } => z.len() + 1,
+            MonotoneKind::Quartic { e } => e.len() + 1,
+            MonotoneKind::Quintic { s } => s.len(),
+            MonotoneKind::Cubic { z } => z.len() + 1,
         };
         if !s.points.as_ref().is_none_or(|points| points.are_sound(n)) {
             return Err("stored data are inconsistent".to_owned());
@@ -138,8 +138,8 @@ impl MonotoneSpline {
                 quintic_records(units, &x[start..], &y[start..], &d[start..], &s[start..], count)
             }
         };
-        let records = record::records(x.len() - 1, tile);
-        let kind = Kind::Quintic { s };
+        let records = segment_polynomial::segment_polynomials(x.len() - 1, tile);
+        let kind = MonotoneKind::Quintic { s };
         let (points, cached) = (None, Cached::default());
         Self { x, y, points, d, units, kind, records, extrapolate, cached }
     }
@@ -155,13 +155,13 @@ impl MonotoneSpline {
         let tile = |start: usize, count: usize| {
             cubic_records(units, &x[start..], &y[start..], &z[start..], count)
         };
-        let records = record::records(x.len() - 1, tile);
+        let records = segment_polynomial::segment_polynomials(x.len() - 1, tile);
         let own = nodes.len() < x.len();
         let points = own.then(|| {
             let (x, y) = both(nodes.len(), || data[0].to_vec(), || data[1].to_vec());
             Box::new(Points { x, y, nodes })
         });
-        let (kind, cached) = (Kind::Cubic { z }, Cached::default());
+        let (kind, cached) = (MonotoneKind::Cubic { z }, Cached::default());
         Self { x, y, points, d, units, kind, records, extrapolate, cached }
     }
 
@@ -176,9 +176,9 @@ impl MonotoneSpline {
         let beyond =
             |nu: usize| move |_: usize, v: f64| !self.units.derivative_out(v, nu).is_finite();
         let seconds = match &self.kind {
-            Kind::Quintic { s } => first(s, beyond(2)),
-            Kind::Cubic { z } => first(z.as_flattened(), beyond(2)).map(|i| i / 2),
-            Kind::Quartic { .. } => None,
+            MonotoneKind::Quintic { s } => first(s, beyond(2)),
+            MonotoneKind::Cubic { z } => first(z.as_flattened(), beyond(2)).map(|i| i / 2),
+            MonotoneKind::Quartic { .. } => None,
         };
         seconds.or_else(|| first(&self.d, beyond(1)))
     }
@@ -220,8 +220,8 @@ impl MonotoneSpline {
     #[must_use]
     pub fn second_derivatives(&self) -> Vec<f64> {
         match &self.kind {
-            Kind::Quintic { s } => self.units.derivatives_out(s, 2),
-            Kind::Cubic { z } => {
+            MonotoneKind::Quintic { s } => self.units.derivatives_out(s, 2),
+            MonotoneKind::Cubic { z } => {
                 let at = |k: usize| match z.get(k) {
                     Some([after, _]) => *after,
                     None => z[k - 1][1],
@@ -232,7 +232,7 @@ impl MonotoneSpline {
                 };
                 self.units.derivatives_out(&seconds, 2)
             }
-            Kind::Quartic { .. } => {
+            MonotoneKind::Quartic { .. } => {
                 let n = self.records.len();
                 (0..=n).map(|i| self.derivative_at(i.min(n - 1), self.x[i], 2)).collect()
             }
@@ -243,9 +243,9 @@ impl MonotoneSpline {
     #[must_use]
     pub fn degree(&self) -> usize {
         match self.kind {
-            Kind::Quartic { .. } => 4,
-            Kind::Quintic { .. } => 5,
-            Kind::Cubic { .. } => 3,
+            MonotoneKind::Quartic { .. } => 4,
+            MonotoneKind::Quintic { .. } => 5,
+            MonotoneKind::Cubic { .. } => 3,
         }
     }
 
@@ -285,12 +285,12 @@ impl MonotoneSpline {
     pub(crate) fn piece_between(&self, i: usize, y0: f64, y1: f64) -> [f64; 6] {
         let [m0, m1] = self.tangent_rises(i);
         match &self.kind {
-            Kind::Quartic { e } => {
+            MonotoneKind::Quartic { e } => {
                 let middle = 0.5 * y0 + 0.5 * y1 + 0.25 * e[i];
                 [y0, y0 + 0.25 * m0, middle, y1 - 0.25 * m1, y1, 0.0]
             }
-            Kind::Cubic { .. } => [y0, y0 + m0 / 3.0, y1 - m1 / 3.0, y1, 0.0, 0.0],
-            Kind::Quintic { s } => {
+            MonotoneKind::Cubic { .. } => [y0, y0 + m0 / 3.0, y1 - m1 / 3.0, y1, 0.0, 0.0],
+            MonotoneKind::Quintic { s } => {
                 let (h, unit) = (self.scaled_length(i), self.units.y());
                 let (k0, k1) = (unit.scale(h * (h * s[i])), unit.scale(h * (h * s[i + 1])));
                 let (b, c) = (y0 + (0.4 * m0 + 0.05 * k0), y1 - (0.4 * m1 - 0.05 * k1));
@@ -306,7 +306,7 @@ impl MonotoneSpline {
         PiecewisePolynomial::new(self.x.clone(), self.degree(), c, self.extrapolate)
     }
 
-    pub(crate) fn record(&self, i: usize) -> &Record {
+    pub(crate) fn record(&self, i: usize) -> &SegmentPolynomial {
         &self.records[i]
     }
 }
@@ -320,7 +320,7 @@ fn quintic_records(
     d: &[f64],
     s: &[f64],
     n: usize,
-) -> [Record; TILE] {
+) -> [SegmentPolynomial; TILE] {
     let (x, y, d, s) = (&x[..=n], &y[..=n], &d[..=n], &s[..=n]);
     let (unit, to_x) = (units.y(), units.spacing());
     let mut q = [[0.0; TILE]; 4];
@@ -328,21 +328,28 @@ fn quintic_records(
         let h = to_x.scale(x[j + 1] - x[j]);
         let m = [unit.scale(h * d[j]), unit.scale(h * d[j + 1])];
         let k = [unit.scale(h * (h * s[j])), unit.scale(h * (h * s[j + 1]))];
-        [q[0][j], q[1][j], q[2][j], q[3][j]] = Record::hermite_form(y[j + 1] - y[j], m, k);
+        [q[0][j], q[1][j], q[2][j], q[3][j]] =
+            SegmentPolynomial::hermite_form(y[j + 1] - y[j], m, k);
     }
-    Record::assembled(x, y, &q)
+    SegmentPolynomial::assembled(x, y, &q)
 }
 
 /// The records of the first `n` cubic pieces, those of a tile.
-fn cubic_records(units: Units, x: &[f64], y: &[f64], z: &[[f64; 2]], n: usize) -> [Record; TILE] {
+fn cubic_records(
+    units: Units,
+    x: &[f64],
+    y: &[f64],
+    z: &[[f64; 2]],
+    n: usize,
+) -> [SegmentPolynomial; TILE] {
     let (unit, to_x) = (units.y(), units.spacing());
     let mut q = [[0.0; TILE]; 4];
     for j in 0..n {
         let h = to_x.scale(x[j + 1] - x[j]);
         let k = z[j].map(|z| unit.scale(h * (h * z)));
-        [q[0][j], q[1][j]] = Record::cubic_form(k);
+        [q[0][j], q[1][j]] = SegmentPolynomial::cubic_form(k);
     }
-    Record::assembled(&x[..=n], &y[..=n], &q)
+    SegmentPolynomial::assembled(&x[..=n], &y[..=n], &q)
 }
 
 #[cfg(feature = "serde")]

@@ -42,13 +42,13 @@ fn options() {
         let options = QuarticOptions { shape, slopes, ..QuarticOptions::default() };
         MonotoneQuartic::new(&x, &y, &options).unwrap_err().to_string()
     };
-    assert!(with(Shape::Uniform(-1.0), Slopes::FritschButland).contains("shape[0] = -1"));
-    assert!(with(Shape::Uniform(f64::NAN), Slopes::FritschButland).contains("NaN"));
-    let pair = Shape::Segments { alpha: vec![1.0, 2.0], beta: vec![1.0, -2.0] };
+    assert!(with(ShapeParameters::Uniform(-1.0), Slopes::FritschButland).contains("shape[0] = -1"));
+    assert!(with(ShapeParameters::Uniform(f64::NAN), Slopes::FritschButland).contains("NaN"));
+    let pair = ShapeParameters::Segments { alpha: vec![1.0, 2.0], beta: vec![1.0, -2.0] };
     assert!(with(pair, Slopes::FritschButland).contains("beta[1] = -2"));
-    let pair = Shape::Segments { alpha: vec![1.0], beta: vec![1.0, 2.0] };
+    let pair = ShapeParameters::Segments { alpha: vec![1.0], beta: vec![1.0, 2.0] };
     assert!(with(pair, Slopes::FritschButland).contains("alpha has 1"));
-    let optimal = with(Shape::default(), Slopes::Optimal);
+    let optimal = with(ShapeParameters::default(), Slopes::Optimal);
     assert!(optimal.contains("optimal") && optimal.contains("fritsch-butland"), "{optimal}");
     let given = |slopes| {
         let options = QuinticOptions { slopes: Slopes::Given(slopes), ..QuinticOptions::default() };

@@ -22,7 +22,7 @@ fn energies_of_the_paper_s_program() {
         let diagnostics = f.diagnostics();
         assert!(diagnostics.converged && diagnostics.certified);
         assert!(diagnostics.kkt_residual <= 1e-10);
-        assert_eq!(diagnostics.solver, Solver::ActiveSet);
+        assert_eq!(diagnostics.solver, SolverKind::ActiveSet);
     }
 }
 
@@ -48,7 +48,7 @@ fn optimal_slopes_come_from_the_interior_point() {
     for middle in [reported.next_down(), reported, reported.next_up()] {
         let f = quintic(&x, &[5.3, 5.6, 6.1, middle, 6.9, 15.2], Slopes::Optimal);
         let d = f.diagnostics();
-        assert_eq!((d.solver, d.converged), (Solver::InteriorPoint, true), "{middle}");
+        assert_eq!((d.solver, d.converged), (SolverKind::InteriorPoint, true), "{middle}");
         assert!((108.4..108.9).contains(&f.bending_energy()), "{middle}: {}", f.bending_energy());
     }
     let mut rng = Rng::new(23);
@@ -59,7 +59,7 @@ fn optimal_slopes_come_from_the_interior_point() {
         let d = f.diagnostics();
         assert_eq!(
             (d.solver, d.converged),
-            (Solver::InteriorPoint, true),
+            (SolverKind::InteriorPoint, true),
             "case {case}: {x:?} {y:?}"
         );
     }

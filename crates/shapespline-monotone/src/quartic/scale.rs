@@ -2,7 +2,7 @@
 
 //! The largest admissible λ of a segment: conditions (12), (13), theorem 1 and the four cases.
 
-use crate::record::TILE;
+use crate::segment_polynomial::TILE;
 
 /// λ is lowered by this much below the largest admissible one, so that the derivative stays strictly non-negative
 /// after rounding.

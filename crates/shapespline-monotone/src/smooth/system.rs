@@ -65,13 +65,13 @@ pub(super) struct System {
     rows: Vec<[f64; 7]>,
     /// Rows of the node in the middle: a, b, c.
     end: [f64; 3],
-    found: Vec<Found>,
+    found: Vec<IntervalSteps>,
 }
 
 /// What is found of an interval's own two unknowns: first its gradient, then their steps, with those of its rise and of the
 /// slope before it.
 #[derive(Debug, Clone, Copy, Default)]
-struct Found {
+struct IntervalSteps {
     own: [f64; 2],
     rise: f64,
     slope: f64,
@@ -87,7 +87,7 @@ struct Carry {
 impl System {
     pub(super) fn new(layout: Layout) -> Self {
         let n = layout.n;
-        let (rows, found) = (vec![[0.0; 7]; n], vec![Found::default(); n]);
+        let (rows, found) = (vec![[0.0; 7]; n], vec![IntervalSteps::default(); n]);
         Self { layout, middle: 0, rows, end: [0.0; 3], found }
     }
 
@@ -322,7 +322,7 @@ fn backward(
     form: Form,
     h: f64,
     &[i00, r01, i11, r0m, r0f, r1m, r1f]: &[f64; 7],
-    found: &mut Found,
+    found: &mut IntervalSteps,
 ) {
     let [q0, q1] = found.own;
     let u1 = (-q1 - r1m * *m - r1f * *f) * i11;
@@ -334,7 +334,7 @@ fn backward(
         Form::Bent(sense) => (h * (*m - sense * u1), *m - sense * (u0 + u1)),
     };
     *f -= rise;
-    *found = Found { own: [u0, u1], rise, slope: *m };
+    *found = IntervalSteps { own: [u0, u1], rise, slope: *m };
 }
 
 /// The covariance of the state before an interval from that behind it: variance of m, covariance, variance of f.

@@ -3,7 +3,7 @@
 //! How a monotone fit went, for Python.
 
 use pyo3::prelude::*;
-use shapespline::monotone::{Diagnostics, MonotoneQuartic, Solver};
+use shapespline::monotone::{Diagnostics, MonotoneQuartic, SolverKind};
 
 use crate::pickle::{self, PickledKind, Reduced};
 
@@ -62,9 +62,9 @@ pub(crate) struct MonotoneDiagnostics {
 impl MonotoneDiagnostics {
     pub(crate) fn of(d: &Diagnostics) -> Self {
         let solver = match d.solver {
-            Solver::ActiveSet => "active-set",
-            Solver::InteriorPoint => "interior-point",
-            Solver::Newton => "newton",
+            SolverKind::ActiveSet => "active-set",
+            SolverKind::InteriorPoint => "interior-point",
+            SolverKind::Newton => "newton",
         };
         Self {
             solver: solver.to_owned(),

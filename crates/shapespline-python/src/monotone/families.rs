@@ -6,8 +6,8 @@ use std::{ops::Range, sync::Arc};
 
 use pyo3::{PyClass, PyClassInitializer, prelude::*};
 use shapespline::monotone::{
-    Convexity, Extrapolation, Fairness, MonotoneError, QuarticOptions, QuinticOptions, Shape,
-    Slopes,
+    Convexity, Extrapolation, Fairness, MonotoneError, QuarticOptions, QuinticOptions,
+    ShapeParameters, Slopes,
 };
 
 use super::{
@@ -211,7 +211,7 @@ impl MonotoneQuartic {
     #[new]
     #[pyo3(
         signature = (x, y, axis=0, *, slopes=SlopesOption::FritschButland,
-                     shape=Shape::Uniform(1.0), extrapolate=Some(Extrapolation::LINEAR)),
+                     shape=ShapeParameters::Uniform(1.0), extrapolate=Some(Extrapolation::LINEAR)),
         text_signature = "(x, y, axis=0, *, slopes='fritsch-butland', shape=1.0, \
                           extrapolate='linear')"
     )]
@@ -220,7 +220,7 @@ impl MonotoneQuartic {
         y: &Bound<'_, PyAny>,
         #[pyo3(from_py_with = options::axis)] axis: isize,
         #[pyo3(from_py_with = options::slopes)] slopes: SlopesOption,
-        #[pyo3(from_py_with = options::shape)] shape: Shape,
+        #[pyo3(from_py_with = options::shape)] shape: ShapeParameters,
         #[pyo3(from_py_with = options::extrapolate)] extrapolate: Option<Extrapolation>,
     ) -> PyResult<PyClassInitializer<Self>> {
         if matches!(slopes, SlopesOption::Optimal) {

@@ -5,7 +5,7 @@
 use pyo3::{exceptions::PyTypeError, prelude::*};
 use shapespline::monotone::{
     self, CubicOptions, Ends, Extrapolation, Fairness, MonotoneError, QuarticOptions,
-    QuinticOptions, Shape, Slopes,
+    QuinticOptions, ShapeParameters, Slopes,
 };
 
 use super::{
@@ -102,7 +102,7 @@ fn energy(object: &Bound<'_, PyAny>) -> PyResult<Option<Fairness>> {
     optional(object, options::energy)
 }
 
-fn shape(object: &Bound<'_, PyAny>) -> PyResult<Option<Shape>> {
+fn shape(object: &Bound<'_, PyAny>) -> PyResult<Option<ShapeParameters>> {
     optional(object, options::shape)
 }
 
@@ -188,7 +188,7 @@ pub(crate) fn fit_many_monotone(
     #[pyo3(from_py_with = min_slope)] min_slope: Option<f64>,
     #[pyo3(from_py_with = energy)] energy: Option<Fairness>,
     clip: bool,
-    #[pyo3(from_py_with = shape)] shape: Option<Shape>,
+    #[pyo3(from_py_with = shape)] shape: Option<ShapeParameters>,
     #[pyo3(from_py_with = options::extrapolate)] extrapolate: Option<Extrapolation>,
 ) -> PyResult<Py<PyAny>> {
     let (x, y) = (array("x", x)?, array("y", y)?);

@@ -9,7 +9,7 @@ use pyo3::{
     types::{PyList, PyTuple},
 };
 use shapespline::monotone::{
-    Continuation, Convexity, Ends, Extrapolation, Fairness, MonotoneError, Shape,
+    Continuation, Convexity, Ends, Extrapolation, Fairness, MonotoneError, ShapeParameters,
 };
 
 use super::layout::Layout;
@@ -317,7 +317,7 @@ pub(crate) fn min_slope(object: &Bound<'_, PyAny>) -> PyResult<f64> {
 }
 
 /// `shape`: α = β, or the two arrays.
-pub(crate) fn shape(object: &Bound<'_, PyAny>) -> PyResult<Shape> {
+pub(crate) fn shape(object: &Bound<'_, PyAny>) -> PyResult<ShapeParameters> {
     // A pair: two numbers, or two arrays of one entry a segment.
     let length = match object.len() {
         Ok(length) => Some(length),
@@ -332,13 +332,15 @@ pub(crate) fn shape(object: &Bound<'_, PyAny>) -> PyResult<Shape> {
         }
         let side = |k: usize, name| numbers(name, &object.get_item(k)?);
         return match (side(0, "shape[0]")?, side(1, "shape[1]")?) {
-            (Numbers::Many(alpha), Numbers::Many(beta)) => Ok(Shape::Segments { alpha, beta }),
+            (Numbers::Many(alpha), Numbers::Many(beta)) => {
+                Ok(ShapeParameters::Segments { alpha, beta })
+            }
             _ => Err(PyTypeError::new_err(
                 "shape must be a number or a pair of arrays (alpha, beta), one entry a segment",
             )),
         };
     }
-    float("shape", object).map(Shape::Uniform)
+    float("shape", object).map(ShapeParameters::Uniform)
 }
 
 pub(crate) fn nu(object: &Bound<'_, PyAny>) -> PyResult<usize> {

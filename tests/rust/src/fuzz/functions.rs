@@ -4,7 +4,7 @@
 
 use shapespline::monotone::{
     BezierLike, Continuation, Extrapolation, Fairness, MonotoneError, MonotoneMany,
-    MonotoneQuartic, MonotoneQuintic, QuarticOptions, QuinticOptions, Shape, Slopes,
+    MonotoneQuartic, MonotoneQuintic, QuarticOptions, QuinticOptions, ShapeParameters, Slopes,
     bezier_like::cubic_basis,
 };
 
@@ -27,9 +27,9 @@ pub(super) fn run(data: &[u8]) {
     if kind < 4 {
         let shape = if bytes.below(3) == 0 {
             let mut entries = || (1..n).map(|_| bytes.unscaled().abs()).collect();
-            Shape::Segments { alpha: entries(), beta: entries() }
+            ShapeParameters::Segments { alpha: entries(), beta: entries() }
         } else {
-            Shape::Uniform(if bytes.flag() { 3.0 } else { bytes.unscaled() })
+            ShapeParameters::Uniform(if bytes.flag() { 3.0 } else { bytes.unscaled() })
         };
         let options = QuarticOptions { slopes, shape, extrapolate };
         judge(&mut bytes, &x, &y, MonotoneQuartic::new(&x, &y, &options));

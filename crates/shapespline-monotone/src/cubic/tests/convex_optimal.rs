@@ -8,7 +8,7 @@ use crate::reference::quadratic;
 impl MonotoneCubic {
     pub(crate) fn seconds(&self) -> Vec<[f64; 2]> {
         match &self.spline.kind {
-            crate::spline::Kind::Cubic { z } => {
+            crate::spline::MonotoneKind::Cubic { z } => {
                 z.iter().map(|z| z.map(|z| self.spline.units.derivative_out(z, 2))).collect()
             }
             _ => panic!("cubic"),

@@ -3,8 +3,8 @@
 //! Many queries at once, each in a segment of its own, and the step that all take.
 
 use super::{FEW, STEPS};
-use crate::record::Record;
-use crate::tiles::TILE;
+use crate::chunked::TILE;
+use crate::segment_polynomial::SegmentPolynomial;
 
 /// Adding it rounds to integers.
 const MAGIC: f64 = 4_503_599_627_370_496.0;
@@ -95,7 +95,7 @@ pub(super) fn many(doubt: &[f64]) -> bool {
 }
 
 /// A tile of queries in their segments, in units of Δy, number by number: the compiler takes several queries at once.
-pub(super) struct Lanes {
+pub(super) struct Batch {
     q: [[f64; TILE]; 4],
     /// `(y − y₀)/Δy` and `(y − y₁)/Δy`.
     pub(super) from: [[f64; TILE]; 2],
@@ -104,9 +104,12 @@ pub(super) struct Lanes {
     pub(super) doubt: [f64; TILE],
 }
 
-impl Lanes {
+impl Batch {
     #[inline(always)]
-    pub(super) fn new<'a>(record: impl Fn(usize) -> &'a Record, y: &[f64; TILE]) -> Self {
+    pub(super) fn new<'a>(
+        record: impl Fn(usize) -> &'a SegmentPolynomial,
+        y: &[f64; TILE],
+    ) -> Self {
         let mut l = Self {
             q: [[0.0; TILE]; 4],
             from: [[0.0; TILE]; 2],

@@ -2,10 +2,10 @@
 
 //! All of the quartic's numbers in one pass over the data: tiles that stay in a core's first cache.
 
-use super::Shape;
+use super::ShapeParameters;
 use super::scale::{Failing, keeps};
 use crate::data::{PowerOfTwo, Units};
-use crate::record::{Record, TILE};
+use crate::segment_polynomial::{SegmentPolynomial, TILE};
 use crate::slopes::{end, harmonic, limit};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -14,21 +14,21 @@ use std::sync::atomic::{AtomicBool, Ordering};
 const TILES: usize = 128;
 
 /// What the pass reads.
-pub(super) struct Pass<'a> {
+pub(super) struct Assembly<'a> {
     pub(super) x: &'a [f64],
     pub(super) y: &'a [f64],
     pub(super) units: Units,
     /// Slopes of the caller's, in the data's units; otherwise Fritsch and Butland's.
     pub(super) given: Option<&'a [f64]>,
-    pub(super) shape: &'a Shape,
+    pub(super) shape: &'a ShapeParameters,
 }
 
 /// What it makes, in the data's units but for the slopes, which are scaled.
-pub(super) struct Made {
+pub(super) struct Assembled {
     pub(super) d: Vec<f64>,
     pub(super) e: Vec<f64>,
     pub(super) scale: Vec<f64>,
-    pub(super) records: Vec<Record>,
+    pub(super) records: Vec<SegmentPolynomial>,
     /// Whether all spacings, secants and slopes are in range.
     pub(super) sound: bool,
 }
@@ -36,8 +36,8 @@ pub(super) struct Made {
 /// One number a segment of a tile.
 type Numbers = [f64; TILE];
 /// A tile's records and its d, e and λ; and those of all tiles, collected without zeros to overwrite.
-type Tile = (([Record; TILE], Numbers), (Numbers, Numbers));
-type Tiles = ((Vec<[Record; TILE]>, Vec<Numbers>), (Vec<Numbers>, Vec<Numbers>));
+type Tile = (([SegmentPolynomial; TILE], Numbers), (Numbers, Numbers));
+type Tiles = ((Vec<[SegmentPolynomial; TILE]>, Vec<Numbers>), (Vec<Numbers>, Vec<Numbers>));
 
 /// The numbers of a tile on the way, and what it makes of them: kept from tile to tile, for what is overwritten need
 /// not be zeroed anew.
@@ -56,7 +56,7 @@ struct Scratch {
     q: [Numbers; 4],
     e: Numbers,
     lambda: Numbers,
-    records: [Record; TILE],
+    records: [SegmentPolynomial; TILE],
 }
 
 impl Default for Scratch {
@@ -74,13 +74,13 @@ impl Default for Scratch {
             q: [zeros; 4],
             e: zeros,
             lambda: zeros,
-            records: [Record::default(); TILE],
+            records: [SegmentPolynomial::default(); TILE],
         }
     }
 }
 
-impl Pass<'_> {
-    pub(super) fn make(&self) -> Made {
+impl Assembly<'_> {
+    pub(super) fn make(&self) -> Assembled {
         let n = self.x.len() - 1;
         let sound = AtomicBool::new(true);
         let work = |scratch: &mut Scratch, tile: usize| -> Tile {
@@ -119,7 +119,7 @@ impl Pass<'_> {
         d.reserve_exact(1);
         d.push(end);
         let sound = sound.into_inner() && self.units.slope().scale(end).is_finite();
-        Made { d, e, scale, records, sound }
+        Assembled { d, e, scale, records, sound }
     }
 
     /// The slope at the first or the last node, scaled.
@@ -203,10 +203,10 @@ impl Pass<'_> {
             // Flat segments have slopes and e of zero, and a λ of one, as they are.
             e[j] = unit.scale(lambda[j] * full[j] * (secant * h));
             let m = [unit.scale(h * d[j]), unit.scale(h * d[j + 1])];
-            [q0[j], q1[j], q2[j]] = Record::quartic_form(step[j], m, e[j]);
+            [q0[j], q1[j], q2[j]] = SegmentPolynomial::quartic_form(step[j], m, e[j]);
         }
         sound &= d[..n].iter().fold(true, |all, d| all & slope.scale(*d).is_finite());
-        Record::assemble(x, y, q, records);
+        SegmentPolynomial::assemble(x, y, q, records);
         sound
     }
 
@@ -220,12 +220,12 @@ impl Pass<'_> {
             (m0[j], m1[j]) = (d[j] / secant, d[j + 1] / secant);
         }
         match self.shape {
-            Shape::Uniform(a) => {
+            ShapeParameters::Uniform(a) => {
                 for j in 0..n {
                     full[j] = 2.0 / 3.0 * (a * m0[j] - a * m1[j]);
                 }
             }
-            Shape::Segments { alpha, beta } => {
+            ShapeParameters::Segments { alpha, beta } => {
                 let (alpha, beta) = (&alpha[start..start + n], &beta[start..start + n]);
                 for j in 0..n {
                     full[j] = 2.0 / 3.0 * (alpha[j] * m0[j] - beta[j] * m1[j]);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! The quintic's two programs through NLopt (feature `nlopt`): a second opinion, not a faster way.
+//! The quintic's two programs through NLopt (feature `nlopt`): a reference to compare with, not a faster way.
 //!
 //! The crate's own solvers exploit the banded structure; NLopt's SLSQP treats the same programs as dense smooth
 //! problems, O(N³) an iteration. Meant for N up to a hundred or so, in tests and comparisons.
@@ -20,9 +20,9 @@ use nlopt::{Algorithm, Nlopt, Target};
 /// As [`crate::MonotoneQuintic::new`].
 ///
 /// ```
-/// use shapespline_monotone::{Fairness, MonotoneQuintic, QuinticOptions, Slopes, second_opinion};
+/// use shapespline_monotone::{Fairness, MonotoneQuintic, QuinticOptions, Slopes, nlopt_reference};
 /// let (x, y) = ([0.0, 1.0, 2.0, 3.0, 5.0], [0.0, 0.1, 2.0, 2.1, 4.0]);
-/// let (_, energy) = second_opinion::paper_program(&x, &y, Fairness::Bending)?;
+/// let (_, energy) = nlopt_reference::paper_program(&x, &y, Fairness::Bending)?;
 /// let options = QuinticOptions { slopes: Slopes::FritschButland, ..QuinticOptions::default() };
 /// let ours = MonotoneQuintic::new(&x, &y, &options)?.bending_energy();
 /// assert!((energy / ours - 1.0).abs() < 1e-8);
@@ -87,9 +87,9 @@ pub fn paper_program(
 /// As [`crate::MonotoneQuintic::new`].
 ///
 /// ```
-/// use shapespline_monotone::{Fairness, MonotoneQuintic, QuinticOptions, second_opinion};
+/// use shapespline_monotone::{Fairness, MonotoneQuintic, QuinticOptions, nlopt_reference};
 /// let (x, y) = ([0.0, 1.0, 2.0, 3.0, 5.0], [0.0, 0.1, 2.0, 2.1, 4.0]);
-/// let (_, _, energy) = second_opinion::optimal_program(&x, &y, Fairness::Bending, 3)?;
+/// let (_, _, energy) = nlopt_reference::optimal_program(&x, &y, Fairness::Bending, 3)?;
 /// let ours = MonotoneQuintic::new(&x, &y, &QuinticOptions::default())?.bending_energy();
 /// assert!((energy / ours - 1.0).abs() < 5e-3);
 /// # Ok::<(), shapespline_monotone::MonotoneError>(())

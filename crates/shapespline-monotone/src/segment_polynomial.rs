@@ -11,7 +11,7 @@ use rayon::prelude::*;
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[repr(C, align(64))]
-pub(crate) struct Record {
+pub(crate) struct SegmentPolynomial {
     pub(crate) x0: f64,
     pub(crate) h: f64,
     /// At the two ends.
@@ -19,7 +19,7 @@ pub(crate) struct Record {
     pub(crate) q: [f64; 4],
 }
 
-impl Record {
+impl SegmentPolynomial {
     /// q from Δy, end slopes `m = h y'` and second derivatives `k = h² y''` in units of y.
     #[inline(always)]
     pub(crate) fn hermite_form(dy: f64, m: [f64; 2], k: [f64; 2]) -> [f64; 4] {
@@ -143,17 +143,17 @@ const TILES: usize = 128;
 /// The records of `n` segments, tile by tile: `tile(start, count)` makes those of a tile, and what it will after the
 /// first `count`. On all threads where there are many, without the detour over zeros.
 #[inline]
-pub(crate) fn records(
+pub(crate) fn segment_polynomials(
     n: usize,
-    tile: impl Fn(usize, usize) -> [Record; TILE] + Sync,
-) -> Vec<Record> {
+    tile: impl Fn(usize, usize) -> [SegmentPolynomial; TILE] + Sync,
+) -> Vec<SegmentPolynomial> {
     if n <= TILE {
         // Small fits are many: no more memory than they need.
         return tile(0, n)[..n].to_vec();
     }
     let one = |k: usize| tile(k * TILE, TILE.min(n - k * TILE));
     let count = n.div_ceil(TILE);
-    let tiles: Vec<[Record; TILE]> = if count <= 2 * TILES {
+    let tiles: Vec<[SegmentPolynomial; TILE]> = if count <= 2 * TILES {
         (0..count).map(one).collect()
     } else {
         (0..count).into_par_iter().with_min_len(TILES).map(one).collect()
@@ -169,8 +169,8 @@ mod tests {
 
     #[test]
     fn hermite_data_come_back() {
-        let q = Record::hermite_form(3.0, [0.7, 1.9], [-0.4, 2.2]);
-        let r = Record { x0: 1.0, h: 2.0, y: [2.0, 5.0], q };
+        let q = SegmentPolynomial::hermite_form(3.0, [0.7, 1.9], [-0.4, 2.2]);
+        let r = SegmentPolynomial { x0: 1.0, h: 2.0, y: [2.0, 5.0], q };
         // The residual is measured from the nearer end and jumps by Δy in the middle: differences stay on one side.
         let f = |t: f64| r.raw(t);
         assert_eq!((f(0.0), f(1.0)), (2.0, 5.0));
@@ -185,8 +185,8 @@ mod tests {
     #[test]
     fn quartic_matches_its_bernstein_form() {
         let (m, e) = ([0.7, 1.9], 0.35);
-        let [q0, q1, q2] = Record::quartic_form(3.0, m, e);
-        let r = Record { x0: 0.0, h: 1.0, y: [2.0, 5.0], q: [q0, q1, q2, 0.0] };
+        let [q0, q1, q2] = SegmentPolynomial::quartic_form(3.0, m, e);
+        let r = SegmentPolynomial { x0: 0.0, h: 1.0, y: [2.0, 5.0], q: [q0, q1, q2, 0.0] };
         let b = [2.0, 2.0 + m[0] / 4.0, 3.5 + e / 4.0, 5.0 - m[1] / 4.0, 5.0];
         for k in 0..=20 {
             let t = f64::from(k) / 20.0;

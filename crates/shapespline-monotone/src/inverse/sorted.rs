@@ -2,10 +2,10 @@
 
 //! Sorted queries on one segment: what depends on the segment alone is done once, and neighbours tell where to start.
 
-use super::lanes::{Unit, many, step};
+use super::batch::{Unit, many, step};
 use super::{STEPS, local};
-use crate::record::Record;
-use crate::tiles::TILE;
+use crate::chunked::TILE;
+use crate::segment_polynomial::SegmentPolynomial;
 
 /// Parts of Δy that one start polynomial reaches over, and the queries it pays for.
 const BLOCKS: f64 = 12.0;
@@ -27,9 +27,15 @@ impl Default for Room {
 
 /// The places of at most [`TILE`] values `y` between those at the segment's ends; `end` is its last abscissa.
 #[inline]
-pub(super) fn invert(record: &Record, end: f64, y: &[f64], out: &mut [f64], room: &mut Room) {
+pub(super) fn invert(
+    record: &SegmentPolynomial,
+    end: f64,
+    y: &[f64],
+    out: &mut [f64],
+    room: &mut Room,
+) {
     let n = y.len();
-    let Record { x0, h, y: [y0, y1], q } = *record;
+    let SegmentPolynomial { x0, h, y: [y0, y1], q } = *record;
     let inverse = 1.0 / (y1 - y0);
     let unit = Unit::of(q, inverse);
     let [from0, from1] = &mut room.from;
