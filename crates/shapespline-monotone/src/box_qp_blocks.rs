@@ -11,7 +11,7 @@
 use crate::MonotoneError;
 use crate::data::Data;
 use crate::energy::Fairness;
-use crate::interrupt::{GoOn, ask};
+use crate::interrupt::{GoOn, check_interrupt};
 use crate::program::Program;
 use rayon::prelude::*;
 use shapespline_banded::box_qp::BoxQpSolution;
@@ -61,7 +61,7 @@ fn solve_by(
     }
     let cut = |k: usize| nodes * k / count;
     let stretch = |program: &mut Program, k: usize| -> Result<Stretch, MonotoneError> {
-        ask(go_on)?;
+        check_interrupt(go_on)?;
         let nodes = cut(k)..cut(k + 1);
         let from = nodes.start.saturating_sub(overlap);
         let to = (nodes.end + overlap).min(d.len());

@@ -115,7 +115,7 @@ impl MonotoneSpline {
         if nu > self.degree() {
             return 0.0;
         }
-        let t = self.records[i].local(x);
+        let t = self.polynomials[i].local(x);
         if let (true, 2, Some(s)) = (t == 0.0 || t == 1.0, nu, self.stored_seconds(i)) {
             return s[usize::from(t == 1.0)];
         }
@@ -133,7 +133,7 @@ impl MonotoneSpline {
 
     /// What the derivative of order `nu` is beyond an end of the knots, where that is a polynomial.
     pub(crate) fn beyond(&self, right: bool, nu: usize, mode: Continuation) -> Option<Beyond> {
-        let n = self.records.len();
+        let n = self.polynomials.len();
         let i = if right { n - 1 } else { 0 };
         let end = [self.x[i], self.x[i + 1]];
         if nu > self.degree() {
@@ -162,7 +162,7 @@ impl MonotoneSpline {
         }
         let mode =
             (0..nu.min(self.degree() + 1)).fold(self.extrapolate, |mode, _| mode.derivative());
-        let n = self.records.len();
+        let n = self.polynomials.len();
         if nu > self.degree() {
             return PiecewisePolynomial::new(self.x.clone(), 0, vec![0.0; n], mode);
         }
@@ -184,7 +184,7 @@ impl MonotoneSpline {
     /// limit (NaN where there is none). O(log N), after a first call of O(N).
     #[must_use]
     pub fn integrate(&self, a: f64, b: f64, extrapolate: Option<Extrapolation>) -> f64 {
-        let n = self.records.len();
+        let n = self.polynomials.len();
         let pieces = Pieces {
             x: &self.x,
             search: self.searcher(false),
@@ -216,7 +216,7 @@ impl MonotoneSpline {
     #[must_use]
     pub fn solve(&self, y: f64, extrapolate: Option<Extrapolation>) -> Vec<f64> {
         let mode = extrapolate.unwrap_or(self.extrapolate);
-        let n = self.records.len();
+        let n = self.polynomials.len();
         if y.is_nan() {
             return Vec::new();
         }

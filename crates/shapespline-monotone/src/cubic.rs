@@ -6,7 +6,7 @@ use crate::MonotoneError;
 use crate::data::{Data, PowerOfTwo, Units, out_of_range, parts_mut};
 use crate::energy::Fairness;
 use crate::extrapolation::{Continuation, Extrapolation};
-use crate::interrupt::{GoOn, ask};
+use crate::interrupt::{GoOn, check_interrupt};
 use crate::quintic::{Diagnostics, SolverKind};
 use crate::smooth::Smoothing;
 use crate::spline::MonotoneSpline;
@@ -129,7 +129,7 @@ impl MonotoneCubic {
         check_share("layer", options.layer, |s| (0.0..=LARGEST_LAYER).contains(&s), "[0, 0.25]")?;
         check_share("min_slope", options.min_slope, |s| (0.0..1.0).contains(&s), "[0, 1)")?;
         let data = Data::new(x, y)?;
-        ask(go_on)?;
+        check_interrupt(go_on)?;
         data.check_curvature(y)?;
         let (mut problem, first) = problem(&data, options)?;
         let form = match &options.convex {
@@ -327,7 +327,7 @@ impl Task {
                     self.bent([x, y], &slopes, &vec![0; x.len()], straight)
                 }
             };
-        ask(go_on)?;
+        check_interrupt(go_on)?;
         let out = |energy: f64| units.energy_out(Fairness::Bending, energy);
         let diagnostics = Diagnostics {
             solver: SolverKind::Newton,

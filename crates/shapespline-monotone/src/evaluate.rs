@@ -82,7 +82,7 @@ impl MonotoneSpline {
             // On few segments, as fine samples are: what depends on a segment alone is loaded once.
             let mut out = [0.0; TILE];
             let done = search.runs(queries, RUNS, |i, run| {
-                self.records[i].values(&queries[run.clone()], &mut out[run]);
+                self.polynomials[i].values(&queries[run.clone()], &mut out[run]);
             });
             if done {
                 return out;
@@ -91,8 +91,8 @@ impl MonotoneSpline {
         let mut segments = [0; TILE];
         search.tile(queries, sorted, &mut segments);
         let value = |i: usize, x: f64| {
-            let record: &SegmentPolynomial = &self.records[i];
-            record.value(record.local(x))
+            let polynomial: &SegmentPolynomial = &self.polynomials[i];
+            polynomial.value(polynomial.local(x))
         };
         if inside && nu == 0 {
             // The places after the last query are on the first segment, and cut off by the callers.
@@ -108,8 +108,8 @@ impl MonotoneSpline {
         let last = self.x.len() - 1;
         if x >= self.x[0] && x <= self.x[last] {
             if nu == 0 {
-                let record = &self.records[i];
-                record.value(record.local(x))
+                let polynomial = &self.polynomials[i];
+                polynomial.value(polynomial.local(x))
             } else {
                 self.derivative_at(i, x, nu)
             }

@@ -9,7 +9,7 @@
 use crate::MonotoneError;
 use crate::data::Data;
 use crate::energy::is_flat;
-use crate::interrupt::{GoOn, ask};
+use crate::interrupt::{GoOn, check_interrupt};
 use crate::optimal::{Fixed, Prescribed};
 use crate::program::admissible_slopes;
 use crate::region::Region;
@@ -78,7 +78,7 @@ pub(crate) fn possible(
     let mut i = 0;
     while i < n {
         if i % ASK == 0 {
-            ask(go_on)?;
+            check_interrupt(go_on)?;
         }
         if let Some(next) = pass.forward(i) {
             pass.left[i + 1] = next;
@@ -96,7 +96,7 @@ pub(crate) fn possible(
             }
         }
     }
-    ask(go_on)?;
+    check_interrupt(go_on)?;
     Ok(pass.choose())
 }
 

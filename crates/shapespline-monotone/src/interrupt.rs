@@ -5,13 +5,13 @@
 use crate::MonotoneError;
 use std::ops::ControlFlow;
 
-/// A question whether to go on, asked from any thread.
+/// Called regularly, from any thread; returns `Break` to cancel.
 pub(crate) type GoOn<'a> = &'a (dyn Fn() -> ControlFlow<()> + Sync);
 
-/// Asks whether to go on.
+/// Calls `go_on`.
 ///
 /// # Errors
-/// [`MonotoneError::Interrupted`] where the answer is no.
-pub(crate) fn ask(go_on: GoOn<'_>) -> Result<(), MonotoneError> {
+/// [`MonotoneError::Interrupted`] if it breaks.
+pub(crate) fn check_interrupt(go_on: GoOn<'_>) -> Result<(), MonotoneError> {
     if go_on().is_break() { Err(MonotoneError::Interrupted) } else { Ok(()) }
 }

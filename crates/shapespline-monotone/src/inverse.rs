@@ -157,7 +157,7 @@ impl MonotoneSpline {
             let (mut out, mut room) = ([0.0; TILE], Room::default());
             let done = search.runs(&keys[..queries.len()], RUNS, |i, run| {
                 sorted::invert(
-                    self.record(i),
+                    self.polynomial(i),
                     self.x[i + 1],
                     &y[run.clone()],
                     &mut out[run],
@@ -170,19 +170,23 @@ impl MonotoneSpline {
         }
         let mut segments = [0; TILE];
         search.tile(&keys[..queries.len()], sorted, &mut segments);
-        let mut lanes = Batch::new(|j| self.record(segments[j]), &y);
-        lanes.solve();
+        let mut batch = Batch::new(|j| self.polynomial(segments[j]), &y);
+        batch.solve();
         std::array::from_fn(|j| {
             // Queries outside the data fail the second test.
-            if (0.0..=1.0).contains(&lanes.from[0][j]) {
-                let record = self.record(segments[j]);
-                let sure = lanes.doubt[j] <= 0.0;
-                let t = if sure { lanes.t[j] } else { local(record, y[j], lanes.t[j]) };
+            if (0.0..=1.0).contains(&batch.from[0][j]) {
+                let polynomial = self.polynomial(segments[j]);
+                let sure = batch.doubt[j] <= 0.0;
+                let t = if sure { batch.t[j] } else { local(polynomial, y[j], batch.t[j]) };
                 let end = self.x[segments[j] + 1];
-                let x = if t < 0.5 { record.x0 + t * record.h } else { end - (1.0 - t) * record.h };
-                let x = if y[j] == record.y[0] { record.x0 } else { x };
-                let x = if y[j] == record.y[1] { end } else { x };
-                x.max(record.x0).min(end)
+                let x = if t < 0.5 {
+                    polynomial.x0 + t * polynomial.h
+                } else {
+                    end - (1.0 - t) * polynomial.h
+                };
+                let x = if y[j] == polynomial.y[0] { polynomial.x0 } else { x };
+                let x = if y[j] == polynomial.y[1] { end } else { x };
+                x.max(polynomial.x0).min(end)
             } else {
                 self.inverse_at(segments[j], y[j])
             }
@@ -212,32 +216,35 @@ impl MonotoneSpline {
 
     /// x in segment i with f(x) = y, for y between the segment's values.
     pub(crate) fn invert_in(&self, i: usize, y: f64) -> f64 {
-        let record = self.record(i);
-        if y == record.y[0] {
-            return record.x0;
+        let polynomial = self.polynomial(i);
+        if y == polynomial.y[0] {
+            return polynomial.x0;
         }
-        if y == record.y[1] {
+        if y == polynomial.y[1] {
             return self.x[i + 1];
         }
-        let t = local(record, y, f64::NAN);
-        let x =
-            if t < 0.5 { record.x0 + t * record.h } else { self.x[i + 1] - (1.0 - t) * record.h };
-        x.max(record.x0).min(self.x[i + 1])
+        let t = local(polynomial, y, f64::NAN);
+        let x = if t < 0.5 {
+            polynomial.x0 + t * polynomial.h
+        } else {
+            self.x[i + 1] - (1.0 - t) * polynomial.h
+        };
+        x.max(polynomial.x0).min(self.x[i + 1])
     }
 }
 
 /// t in [0, 1] with f(t) = y: Newton in a bracket, from a start that is in it or from the chord.
 #[inline]
-fn local(record: &SegmentPolynomial, y: f64, start: f64) -> f64 {
-    let dy = record.y[1] - record.y[0];
+fn local(polynomial: &SegmentPolynomial, y: f64, start: f64) -> f64 {
+    let dy = polynomial.y[1] - polynomial.y[0];
     let rising = dy > 0.0;
-    let (from0, from1) = (y - record.y[0], y - record.y[1]);
+    let (from0, from1) = (y - polynomial.y[0], y - polynomial.y[1]);
     let (mut lo, mut hi) = (0.0f64, 1.0f64);
     let mut t = if start > 0.0 && start < 1.0 { start } else { from0 / dy };
     // A residual below half an ulp of y is as good as zero.
     let tolerance = 0.25 * f64::EPSILON * y.abs().max(f64::MIN_POSITIVE);
     for k in 0..80 {
-        let (value, slope) = record.residual_and_slope(t);
+        let (value, slope) = polynomial.residual_and_slope(t);
         let r = value - if t < 0.5 { from0 } else { from1 };
         if r.abs() <= tolerance {
             break;

@@ -116,8 +116,8 @@ impl MonotoneQuartic {
                 }
             }
         }
-        let pass = Assembly { x, y, units, given, shape: &options.shape };
-        let Assembled { d, e, scale, records, sound } = pass.make();
+        let assembly = Assembly { x, y, units, given, shape: &options.shape };
+        let Assembled { d, e, scale, polynomials, sound } = assembly.make();
         if !sound {
             // A spacing or a secant out of range, or a slope in the data's units: what and where.
             Data::new(x, y)?;
@@ -137,7 +137,7 @@ impl MonotoneQuartic {
             d,
             units,
             kind: MonotoneKind::Quartic { e },
-            records,
+            polynomials,
             extrapolate: options.extrapolate,
             cached: Cached::default(),
         };

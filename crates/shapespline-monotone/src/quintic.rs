@@ -8,7 +8,7 @@ use crate::data::{Data, check_finite, parts};
 use crate::energy::{self, Fairness, is_flat};
 use crate::extrapolation::Extrapolation;
 use crate::given;
-use crate::interrupt::{GoOn, ask};
+use crate::interrupt::{GoOn, check_interrupt};
 use crate::optimal::{self, Optimum, coefficients};
 use crate::overlapping_blocks;
 use crate::program::admissible_slopes;
@@ -139,7 +139,7 @@ impl MonotoneQuintic {
         go_on: &(dyn Fn() -> ControlFlow<()> + Sync),
     ) -> Result<Self, MonotoneError> {
         let data = Data::new(x, y)?;
-        ask(go_on)?;
+        check_interrupt(go_on)?;
         data.check_curvature(y)?;
         let fairness = options.fairness;
         let (d, s, mut diagnostics) = match &options.slopes {
@@ -159,7 +159,7 @@ impl MonotoneQuintic {
             }
             Slopes::Optimal => with_optimal_slopes(&data, fairness, go_on)?,
         };
-        ask(go_on)?;
+        check_interrupt(go_on)?;
         let units = data.units();
         let bending = energy::total(&data, Fairness::Bending, &d, &s);
         let bending_energy = units.energy_out(Fairness::Bending, bending);
@@ -170,7 +170,7 @@ impl MonotoneQuintic {
             }
         };
         drop(data);
-        ask(go_on)?;
+        check_interrupt(go_on)?;
         let spline =
             MonotoneSpline::quintic(units, x.to_vec(), y.to_vec(), d, s, options.extrapolate);
         // A second derivative beyond double precision: refuse rather than hand out infinities.
@@ -244,7 +244,7 @@ fn with_fixed_slopes(
     fairness: Fairness,
     go_on: GoOn<'_>,
 ) -> Result<Fit, MonotoneError> {
-    ask(go_on)?;
+    check_interrupt(go_on)?;
     admissible_slopes(data, &mut d);
     let solution = box_qp_blocks::solve(data, &d, fairness, go_on)?;
     let diagnostics = Diagnostics {

@@ -45,26 +45,33 @@ impl SegmentPolynomial {
         [middle, 0.5 * (r - p), 0.5 * (p + r) - middle]
     }
 
-    /// The records of a tile between points, from their q number by number; those after the last are of no meaning.
+    /// The polynomials of a tile between points, from their q number by number; those after the
+    /// last are of no meaning.
     #[inline(always)]
     pub(crate) fn assembled(x: &[f64], y: &[f64], q: &[[f64; TILE]; 4]) -> [Self; TILE] {
-        let mut records = [Self::default(); TILE];
-        Self::assemble(x, y, q, &mut records);
-        records
+        let mut polynomials = [Self::default(); TILE];
+        Self::assemble(x, y, q, &mut polynomials);
+        polynomials
     }
 
     /// [`Self::assembled`] where there is room for them already; those after the last stay as they are.
     #[inline(always)]
-    pub(crate) fn assemble(x: &[f64], y: &[f64], q: &[[f64; TILE]; 4], records: &mut [Self; TILE]) {
+    pub(crate) fn assemble(
+        x: &[f64],
+        y: &[f64],
+        q: &[[f64; TILE]; 4],
+        polynomials: &mut [Self; TILE],
+    ) {
         let points = x.windows(2).zip(y.windows(2));
-        // Number by number: a record that is made first and moved then is read before it is written out.
-        for (j, (record, (x, y))) in records.iter_mut().zip(points).enumerate() {
-            record.x0 = x[0];
-            record.h = x[1] - x[0];
-            record.y[0] = y[0];
-            record.y[1] = y[1];
+        // Number by number: a polynomial that is made first and moved then is read before it is
+        // written out.
+        for (j, (polynomial, (x, y))) in polynomials.iter_mut().zip(points).enumerate() {
+            polynomial.x0 = x[0];
+            polynomial.h = x[1] - x[0];
+            polynomial.y[0] = y[0];
+            polynomial.y[1] = y[1];
             for k in 0..4 {
-                record.q[k] = q[k][j];
+                polynomial.q[k] = q[k][j];
             }
         }
     }
@@ -136,12 +143,14 @@ impl SegmentPolynomial {
     }
 }
 
-/// Segments whose records one item of a parallel loop makes, and items that one thread makes at least.
+/// Segments whose polynomials one item of a parallel loop makes, and items that one thread makes at
+/// least.
 pub(crate) const TILE: usize = 64;
 const TILES: usize = 128;
 
-/// The records of `n` segments, tile by tile: `tile(start, count)` makes those of a tile, and what it will after the
-/// first `count`. On all threads where there are many, without the detour over zeros.
+/// The polynomials of `n` segments, tile by tile: `tile(start, count)` makes those of a tile, and
+/// what it will after the first `count`. On all threads where there are many, without the detour
+/// over zeros.
 #[inline]
 pub(crate) fn segment_polynomials(
     n: usize,
@@ -158,9 +167,9 @@ pub(crate) fn segment_polynomials(
     } else {
         (0..count).into_par_iter().with_min_len(TILES).map(one).collect()
     };
-    let mut records = tiles.into_flattened();
-    records.truncate(n);
-    records
+    let mut polynomials = tiles.into_flattened();
+    polynomials.truncate(n);
+    polynomials
 }
 
 #[cfg(test)]

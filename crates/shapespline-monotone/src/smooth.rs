@@ -20,7 +20,7 @@
 use crate::MonotoneError;
 use crate::cubic::{Known, MonotoneCubic};
 use crate::extrapolation::Extrapolation;
-use crate::interrupt::ask;
+use crate::interrupt::check_interrupt;
 use input::Input;
 use penalty::{LINE, Optima};
 use std::ops::ControlFlow;
@@ -141,7 +141,7 @@ pub fn smooth_monotone_with(
     go_on: &(dyn Fn() -> ControlFlow<()> + Sync),
 ) -> Result<MonotoneCubic, MonotoneError> {
     let input = Input::new(x, y, options)?;
-    ask(go_on)?;
+    check_interrupt(go_on)?;
     let mut optima = Optima::new(&input, go_on);
     let lambda = match options.penalty {
         PenaltyChoice::CrossValidated => optima.cross_validated()?,

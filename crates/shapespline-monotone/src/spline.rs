@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! The interpolant that all schemes make: data, slopes, and one evaluation record per piece.
+//! The interpolant that all schemes make: data, slopes, and one evaluation polynomial per piece.
 
 use crate::cubic::Pieces;
 use crate::data::{Units, both, first};
@@ -53,7 +53,7 @@ pub struct MonotoneSpline {
     pub(crate) d: Vec<f64>,
     pub(crate) units: Units,
     pub(crate) kind: MonotoneKind,
-    pub(crate) records: Vec<SegmentPolynomial>,
+    pub(crate) polynomials: Vec<SegmentPolynomial>,
     pub(crate) extrapolate: Extrapolation,
     pub(crate) cached: Cached,
 }
@@ -81,15 +81,15 @@ struct Stored {
     points: Option<Box<Points>>,
     d: Vec<f64>,
     kind: MonotoneKind,
-    records: Vec<SegmentPolynomial>,
+    polynomials: Vec<SegmentPolynomial>,
     extrapolate: Extrapolation,
 }
 
 #[cfg(feature = "serde")]
 impl From<MonotoneSpline> for Stored {
     fn from(s: MonotoneSpline) -> Self {
-        let MonotoneSpline { x, y, points, d, kind, records, extrapolate, .. } = s;
-        Self { x, y, points, d, kind, records, extrapolate }
+        let MonotoneSpline { x, y, points, d, kind, polynomials, extrapolate, .. } = s;
+        Self { x, y, points, d, kind, polynomials, extrapolate }
     }
 }
 
@@ -106,7 +106,7 @@ impl TryFrom<Stored> for MonotoneSpline {
         if !s.points.as_ref().is_none_or(|points| points.are_sound(n)) {
             return Err("stored data are inconsistent".to_owned());
         }
-        if n < 2 || s.y.len() != n || s.d.len() != n || extra != n || s.records.len() + 1 != n {
+        if n < 2 || s.y.len() != n || s.d.len() != n || extra != n || s.polynomials.len() + 1 != n {
             return Err("stored interpolant is inconsistent".to_owned());
         }
         // Those of the data: knots between them would change the mean spacing.
@@ -115,8 +115,18 @@ impl TryFrom<Stored> for MonotoneSpline {
         if x.len() < s.x.len() {
             crate::data::check(&s.x, &s.y).map_err(|error| format!("stored knots: {error}"))?;
         }
-        let Stored { x, y, points, d, kind, records, extrapolate } = s;
-        Ok(Self { x, y, points, d, units, kind, records, extrapolate, cached: Cached::default() })
+        let Stored { x, y, points, d, kind, polynomials, extrapolate } = s;
+        Ok(Self {
+            x,
+            y,
+            points,
+            d,
+            units,
+            kind,
+            polynomials,
+            extrapolate,
+            cached: Cached::default(),
+        })
     }
 }
 
@@ -138,10 +148,10 @@ impl MonotoneSpline {
                 quintic_records(units, &x[start..], &y[start..], &d[start..], &s[start..], count)
             }
         };
-        let records = segment_polynomial::segment_polynomials(x.len() - 1, tile);
+        let polynomials = segment_polynomial::segment_polynomials(x.len() - 1, tile);
         let kind = MonotoneKind::Quintic { s };
         let (points, cached) = (None, Cached::default());
-        Self { x, y, points, d, units, kind, records, extrapolate, cached }
+        Self { x, y, points, d, units, kind, polynomials, extrapolate, cached }
     }
 
     /// Of cubic pieces with knots between the data.
@@ -153,16 +163,16 @@ impl MonotoneSpline {
     ) -> Self {
         let Pieces { x, y, slope: d, second: z, nodes, .. } = pieces;
         let tile = |start: usize, count: usize| {
-            cubic_records(units, &x[start..], &y[start..], &z[start..], count)
+            cubic_polynomials(units, &x[start..], &y[start..], &z[start..], count)
         };
-        let records = segment_polynomial::segment_polynomials(x.len() - 1, tile);
+        let polynomials = segment_polynomial::segment_polynomials(x.len() - 1, tile);
         let own = nodes.len() < x.len();
         let points = own.then(|| {
             let (x, y) = both(nodes.len(), || data[0].to_vec(), || data[1].to_vec());
             Box::new(Points { x, y, nodes })
         });
         let (kind, cached) = (MonotoneKind::Cubic { z }, Cached::default());
-        Self { x, y, points, d, units, kind, records, extrapolate, cached }
+        Self { x, y, points, d, units, kind, polynomials, extrapolate, cached }
     }
 
     /// The segment of the data in which a knot lies.
@@ -233,7 +243,7 @@ impl MonotoneSpline {
                 self.units.derivatives_out(&seconds, 2)
             }
             MonotoneKind::Quartic { .. } => {
-                let n = self.records.len();
+                let n = self.polynomials.len();
                 (0..=n).map(|i| self.derivative_at(i.min(n - 1), self.x[i], 2)).collect()
             }
         }
@@ -258,8 +268,8 @@ impl MonotoneSpline {
     /// Bernstein coefficients of the pieces, `degree + 1` per piece (equations (15) and (16)), for `BPoly`.
     #[must_use]
     pub fn bernstein_coefficients(&self) -> Vec<f64> {
-        let mut out = Vec::with_capacity(self.records.len() * (self.degree() + 1));
-        for i in 0..self.records.len() {
+        let mut out = Vec::with_capacity(self.polynomials.len() * (self.degree() + 1));
+        for i in 0..self.polynomials.len() {
             out.extend_from_slice(&self.piece(i)[..=self.degree()]);
         }
         out
@@ -306,12 +316,12 @@ impl MonotoneSpline {
         PiecewisePolynomial::new(self.x.clone(), self.degree(), c, self.extrapolate)
     }
 
-    pub(crate) fn record(&self, i: usize) -> &SegmentPolynomial {
-        &self.records[i]
+    pub(crate) fn polynomial(&self, i: usize) -> &SegmentPolynomial {
+        &self.polynomials[i]
     }
 }
 
-/// The records of the first `n` segments, those of a tile; several are made at once.
+/// The polynomials of the first `n` segments, those of a tile; several are made at once.
 #[inline(always)]
 fn quintic_records(
     units: Units,
@@ -334,8 +344,8 @@ fn quintic_records(
     SegmentPolynomial::assembled(x, y, &q)
 }
 
-/// The records of the first `n` cubic pieces, those of a tile.
-fn cubic_records(
+/// The polynomials of the first `n` cubic pieces, those of a tile.
+fn cubic_polynomials(
     units: Units,
     x: &[f64],
     y: &[f64],

@@ -8,7 +8,7 @@ use super::stretch::{Room, Steps, Stretch};
 use crate::MonotoneError;
 use crate::data::{Data, both, joined, parts};
 use crate::energy::is_flat;
-use crate::interrupt::{GoOn, ask};
+use crate::interrupt::{GoOn, check_interrupt};
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -124,7 +124,7 @@ impl Problem {
         let count = (nodes / PART).max(1);
         let cut = |k: usize| nodes * k / count;
         let part = |room: &mut Room, k: usize| -> Result<(Part, Steps), MonotoneError> {
-            ask(go_on)?;
+            check_interrupt(go_on)?;
             Ok(self.part(cut(k)..cut(k + 1), layers, room))
         };
         if count == 1 {

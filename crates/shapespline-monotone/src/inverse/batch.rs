@@ -9,7 +9,7 @@ use crate::segment_polynomial::SegmentPolynomial;
 /// Adding it rounds to integers.
 const MAGIC: f64 = 4_503_599_627_370_496.0;
 
-/// A segment in units of Δy: the cubic q of its record and its end slopes.
+/// A segment in units of Δy: the cubic q of its polynomial and its end slopes.
 #[derive(Clone, Copy)]
 pub(super) struct Unit {
     pub(super) q: [f64; 4],
@@ -17,7 +17,7 @@ pub(super) struct Unit {
 }
 
 impl Unit {
-    /// Of a record's q, and 1/Δy.
+    /// Of a polynomial's q, and 1/Δy.
     #[inline(always)]
     pub(super) fn of(q: [f64; 4], unit: f64) -> Self {
         let q = [q[0] * unit, q[1] * unit, q[2] * unit, q[3] * unit];
@@ -107,7 +107,7 @@ pub(super) struct Batch {
 impl Batch {
     #[inline(always)]
     pub(super) fn new<'a>(
-        record: impl Fn(usize) -> &'a SegmentPolynomial,
+        polynomial: impl Fn(usize) -> &'a SegmentPolynomial,
         y: &[f64; TILE],
     ) -> Self {
         let mut l = Self {
@@ -118,7 +118,7 @@ impl Batch {
         };
         let mut rise = [0.0; TILE];
         for j in 0..TILE {
-            let r = record(j);
+            let r = polynomial(j);
             rise[j] = r.y[1] - r.y[0];
             (l.q[0][j], l.q[1][j], l.q[2][j], l.q[3][j]) = (r.q[0], r.q[1], r.q[2], r.q[3]);
             (l.from[0][j], l.from[1][j]) = (y[j] - r.y[0], y[j] - r.y[1]);

@@ -28,14 +28,14 @@ impl Default for Room {
 /// The places of at most [`TILE`] values `y` between those at the segment's ends; `end` is its last abscissa.
 #[inline]
 pub(super) fn invert(
-    record: &SegmentPolynomial,
+    polynomial: &SegmentPolynomial,
     end: f64,
     y: &[f64],
     out: &mut [f64],
     room: &mut Room,
 ) {
     let n = y.len();
-    let SegmentPolynomial { x0, h, y: [y0, y1], q } = *record;
+    let SegmentPolynomial { x0, h, y: [y0, y1], q } = *polynomial;
     let inverse = 1.0 / (y1 - y0);
     let unit = Unit::of(q, inverse);
     let [from0, from1] = &mut room.from;
@@ -68,7 +68,7 @@ pub(super) fn invert(
     }
     for j in 0..n {
         if !(doubt[j] <= 0.0) {
-            t[j] = local(record, y[j], t[j]);
+            t[j] = local(polynomial, y[j], t[j]);
         }
     }
     for ((x, t), y) in out.iter_mut().zip(&*t).zip(y) {

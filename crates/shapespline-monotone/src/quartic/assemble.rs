@@ -28,14 +28,15 @@ pub(super) struct Assembled {
     pub(super) d: Vec<f64>,
     pub(super) e: Vec<f64>,
     pub(super) scale: Vec<f64>,
-    pub(super) records: Vec<SegmentPolynomial>,
+    pub(super) polynomials: Vec<SegmentPolynomial>,
     /// Whether all spacings, secants and slopes are in range.
     pub(super) sound: bool,
 }
 
 /// One number a segment of a tile.
 type Numbers = [f64; TILE];
-/// A tile's records and its d, e and λ; and those of all tiles, collected without zeros to overwrite.
+/// A tile's polynomials and its d, e and λ; and those of all tiles, collected without zeros to
+/// overwrite.
 type Tile = (([SegmentPolynomial; TILE], Numbers), (Numbers, Numbers));
 type Tiles = ((Vec<[SegmentPolynomial; TILE]>, Vec<Numbers>), (Vec<Numbers>, Vec<Numbers>));
 
@@ -56,7 +57,7 @@ struct Scratch {
     q: [Numbers; 4],
     e: Numbers,
     lambda: Numbers,
-    records: [SegmentPolynomial; TILE],
+    polynomials: [SegmentPolynomial; TILE],
 }
 
 impl Default for Scratch {
@@ -74,7 +75,7 @@ impl Default for Scratch {
             q: [zeros; 4],
             e: zeros,
             lambda: zeros,
-            records: [SegmentPolynomial::default(); TILE],
+            polynomials: [SegmentPolynomial::default(); TILE],
         }
     }
 }
@@ -96,10 +97,10 @@ impl Assembly<'_> {
             }
             let mut d = [0.0; TILE];
             d.copy_from_slice(&scratch.d[..TILE]);
-            ((scratch.records, d), (scratch.e, scratch.lambda))
+            ((scratch.polynomials, d), (scratch.e, scratch.lambda))
         };
         let count = n.div_ceil(TILE);
-        let ((records, d), (e, scale)): Tiles = if count <= 2 * TILES {
+        let ((polynomials, d), (e, scale)): Tiles = if count <= 2 * TILES {
             let mut scratch = Scratch::default();
             (0..count).map(|tile| work(&mut scratch, tile)).unzip()
         } else {
@@ -112,14 +113,14 @@ impl Assembly<'_> {
             numbers
         };
         let (mut d, e, scale) = (numbers(d), numbers(e), numbers(scale));
-        let mut records = records.into_flattened();
-        records.truncate(n);
+        let mut polynomials = polynomials.into_flattened();
+        polynomials.truncate(n);
         let end = self.end_slope(n);
         // There is room unless all tiles are full; then for this one only, not for as many again.
         d.reserve_exact(1);
         d.push(end);
         let sound = sound.into_inner() && self.units.slope().scale(end).is_finite();
-        Assembled { d, e, scale, records, sound }
+        Assembled { d, e, scale, polynomials, sound }
     }
 
     /// The slope at the first or the last node, scaled.
@@ -148,8 +149,9 @@ impl Assembly<'_> {
         PowerOfTwo::new(self.units.ex - self.units.ey).scale(slope)
     }
 
-    /// The numbers of `n` segments from `start` on; records after the last are of no meaning. Nothing but arithmetic
-    /// and selections, from one small array to another: done for several segments at once.
+    /// The numbers of `n` segments from `start` on; polynomials after the last are of no meaning.
+    /// Nothing but arithmetic and selections, from one small array to another: done for several
+    /// segments at once.
     #[inline(always)]
     fn tile(&self, start: usize, n: usize, scratch: &mut Scratch) -> bool {
         let Scratch { h, delta, d, .. } = scratch;
@@ -191,7 +193,7 @@ impl Assembly<'_> {
             }
         }
         self.scales(start, n, scratch);
-        let Scratch { h, delta, d, full, step, q, e, lambda, records, .. } = scratch;
+        let Scratch { h, delta, d, full, step, q, e, lambda, polynomials, .. } = scratch;
         // In the data's units.
         let (unit, slope) = (self.units.y(), self.units.slope());
         let [q0, q1, q2, _] = q;
@@ -206,7 +208,7 @@ impl Assembly<'_> {
             [q0[j], q1[j], q2[j]] = SegmentPolynomial::quartic_form(step[j], m, e[j]);
         }
         sound &= d[..n].iter().fold(true, |all, d| all & slope.scale(*d).is_finite());
-        SegmentPolynomial::assemble(x, y, q, records);
+        SegmentPolynomial::assemble(x, y, q, polynomials);
         sound
     }
 

@@ -13,7 +13,7 @@ use super::interior::{State, Task};
 use super::interval::Model;
 use super::system::{HELD, Layout, System};
 use crate::MonotoneError;
-use crate::interrupt::{GoOn, ask};
+use crate::interrupt::{GoOn, check_interrupt};
 
 const STEPS: usize = 15;
 /// The part of a step below which it is none.
@@ -164,7 +164,7 @@ impl<'a> Newton<'a> {
         self.evaluate(*first, sizes);
         let mut last = f64::INFINITY;
         for solves in 1..=STEPS {
-            ask(go_on)?;
+            check_interrupt(go_on)?;
             self.constrain(sizes, &mut stiff, &mut beside);
             system.factor(h, &self.models, &twice, &stiff);
             system.solve(h, &self.models, &self.pull, &beside, &mut step);

@@ -9,7 +9,7 @@
 use super::interval::{Model, is_cubic};
 use super::system::{Layout, System};
 use crate::MonotoneError;
-use crate::interrupt::{GoOn, ask};
+use crate::interrupt::{GoOn, check_interrupt};
 
 /// Distance from a bound that is not there.
 pub(super) const FAR: f64 = 1e300;
@@ -209,7 +209,7 @@ pub(super) fn minimise(
     let (mut sizes, mut targets) = (nothing.clone(), nothing.clone());
     let (mut predicted, mut step) = (nothing.clone(), nothing.clone());
     loop {
-        ask(go_on)?;
+        check_interrupt(go_on)?;
         models.clear();
         models.extend((0..n).map(|i| task.model(lambda, i, &state.sizes)));
         task.values(state.first, &state.sizes, &mut f);
