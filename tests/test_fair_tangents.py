@@ -115,3 +115,18 @@ def test_with_corners_and_a_largest_deviation(dim, rng):
         curve = ss.FairSpline(points, corners=[5], tangents=wanted, max_deviation=0.5)
         assert curve.check().ok
         assert keeps(curve, wanted)
+
+
+@pytest.mark.parametrize("turn", [1e-4, 1e-6, 1e-8, 1e-9])
+def test_end_tangents_across_nearly_straight_data(turn):
+    """The first handle has to be as short as the turn beside it is small; no other handle has."""
+    x = np.arange(6.0)
+    points = np.column_stack([x, turn * x**2])
+    curve = ss.FairSpline(points, boundary=ss.Tangents((1, -2), (1, 1)))
+    report = curve.check()
+    assert report.ok and not report.undecided
+    start, end = curve.tangents[[0, -1]]
+    np.testing.assert_allclose(start / np.linalg.norm(start), np.array([1, -2]) / np.sqrt(5))
+    np.testing.assert_allclose(end / np.linalg.norm(end), np.array([1, 1]) / np.sqrt(2))
+    assert 0.5 * turn < np.linalg.norm(start) < 10 * turn
+    assert np.linalg.norm(curve.tangents[1:-1], axis=1).min() > 0.1
