@@ -101,22 +101,15 @@ pub(crate) fn mend(demands: &Demands<'_>, chain: &mut Chain, control: &mut Contr
     }
 }
 
-/// Restarts around some segments of a feasible chain, and keeps what is better than before. Those that nearly stop all
-/// the same are restarted with more nodes on each side.
+/// Restarts around some segments of a feasible chain, and keeps what is better than before.
 pub(crate) fn refresh(
     demands: &Demands<'_>,
     chain: &mut Chain,
     segments: &[usize],
     control: &mut Control<'_>,
 ) {
-    for pad in [0, 2] {
+    for pad in 0..2 {
         for nodes in clusters(chain, segments, pad) {
-            // In a ring the nodes may go on beyond the last.
-            let is_in = |j: usize| nodes.contains(&j) || nodes.contains(&(j + chain.nodes.len()));
-            let stops = |&k: &usize| is_in(k) && chain.nearly_stops(k);
-            if pad > 0 && !segments.iter().any(stops) {
-                continue;
-            }
             let (value, part) =
                 settle(demands, chain, &part(chain, nodes.clone()), &THOROUGH, control);
             let best = best_restart(demands, chain, &nodes, &THOROUGH, control);
