@@ -172,7 +172,7 @@ impl CatmullRom {
         let (mut outcome, report) = if found.violations.is_empty() {
             (Outcome::solved(), ShapeReport::clean(legs.len(), criteria, found.applicable))
         } else {
-            // What the closed forms leave: coplanarity, and violations of rounding.
+            // What the closed forms leave: coplanarity, and what rounding violates.
             let mut handles = Handles::under_tension(&polygon, legs, factors);
             let rest =
                 SearchOptions { criteria, tolerances, step: 0.25, ..SearchOptions::default() };

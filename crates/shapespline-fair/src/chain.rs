@@ -196,7 +196,7 @@ impl Chain {
         binding
     }
 
-    /// Requirements back with each row of a segment and its value.
+    /// Calls back with each row of a segment and its value.
     pub(crate) fn each_row(&self, k: usize, legs: &Legs, mut f: impl FnMut(usize, f64)) {
         let shape = Shape::new(&self.segments[k], &self.rules, legs);
         for i in self.ranges[k].clone() {

@@ -130,8 +130,8 @@ impl LadderResult<'_> {
     /// The segments in which the plain cubic fails.
     pub(crate) fn failing(&self, demands: &Demands<'_>) -> Vec<usize> {
         let checker = demands.checker;
-        let violations = checker.all_unproved(|i| self.plain.legs(i));
-        let mut failing: Vec<usize> = violations.into_iter().map(|(i, _)| i).collect();
+        let unproved = checker.all_unproved(|i| self.plain.legs(i));
+        let mut failing: Vec<usize> = unproved.into_iter().map(|(i, _)| i).collect();
         let constraints = demands.constraints;
         let straight = !demands.runs.segments.is_empty();
         if constraints.max_deviation.is_some() || !constraints.tangents.is_empty() || straight {

@@ -70,7 +70,7 @@ impl<'a, T: Sync> Ragged<'a, T> {
         &self.values[self.range(k)]
     }
 
-    /// Requirements `work` with every row and its index, in parallel; results in the order of the rows.
+    /// Calls `work` with every row and its index, in parallel; results in the order of the rows.
     ///
     /// `threads`: `None` takes rayon's pool as it is (the caller's, else the global one), which also
     /// does the work where the system grants no threads of its own. No more are made than there are

@@ -89,7 +89,7 @@ impl Scale {
         })
     }
 
-    /// Requirements `make` with what the crate of the family takes.
+    /// Calls `make` with what the crate of the family takes.
     pub(crate) fn with<T>(&self, segments: usize, make: impl FnOnce(TangentScale<'_>) -> T) -> T {
         match self {
             Self::Nodes(Numbers::One(value)) => make(TangentScale::Uniform(*value)),

@@ -40,7 +40,7 @@ fn derivatives([a, c]: [DVec3; 2], chord: DVec3, t: f64) -> [DVec3; 3] {
     [a * (s * s) + b * (2.0 * s * t) + c * (t * t), (b - a) * s + (c - b) * t, a + c - b * 2.0]
 }
 
-/// Requirements `look` with the parameter and `ω` along the two segments together.
+/// Calls `look` with the parameter and `ω` along the two segments together.
 fn along(
     polygon: &DataPolygon,
     legs: &dyn Fn(usize) -> [DVec3; 2],

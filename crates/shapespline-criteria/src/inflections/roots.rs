@@ -8,7 +8,7 @@ const DEPTH: u32 = 44;
 /// Refinements of a bracketed root, by Newton's method or else by halving.
 const STEPS: usize = 100;
 
-/// Requirements `found(t, width)` for every root of the polynomial on `[0, 1]`, where coefficients
+/// Calls `found(t, width)` for every root of the polynomial on `[0, 1]`, where coefficients
 /// carry an error of at most `error`: the root lies within `width` of `t`. An interval where
 /// rounding leaves open whether there are roots, and how many, is reported twice. A root that the
 /// polynomial does not have may be reported; one that it has is never missed.

@@ -33,7 +33,7 @@ pub(crate) enum Column<'a> {
     Pieces(&'a PiecewisePolynomial),
 }
 
-/// Requirements a method that both kinds have.
+/// Calls a method that both kinds have.
 macro_rules! both {
     ($column:expr, $f:ident => $body:expr) => {
         match $column {
