@@ -14,7 +14,8 @@ from scipy.interpolate import CubicSpline, make_interp_spline
 import cases
 import polygons
 import shapespline as ss
-from shapespline import _files, _tables, cli
+from shapespline import _cli
+from shapespline._cli import files, tables
 
 DOCS = Path(__file__).parent.parent / "python" / "docs"
 
@@ -24,7 +25,7 @@ def run(capsys):
     """Return a function that runs the command line and returns status, output and errors."""
 
     def call(*arguments):
-        status = cli.main([str(a) for a in arguments])
+        status = _cli.main([str(a) for a in arguments])
         captured = capsys.readouterr()
         return status, captured.out, captured.err
 
@@ -46,7 +47,7 @@ def write(path, entries):
 @pytest.fixture
 def curve(tmp_path):
     path = tmp_path / "curve.json"
-    _files.write_curve(path, ss.NuSpline([[0, 0], [1, 1], [2, 0], [3, 1]]))
+    files.write_curve(path, ss.NuSpline([[0, 0], [1, 1], [2, 0], [3, 1]]))
     return path
 
 
@@ -60,7 +61,7 @@ def test_what_is_written_is_judged_as_the_curve_itself(case, run, tmp_path):
     names = "x,y,z"[: 2 * case.points.shape[1] - 1]
     np.savetxt(csv, case.points, delimiter=",", header=names, comments="", fmt="%.17g")
     for made, expected in ((case.fit(), None), (case.preserve(), 0)):
-        _files.write_curve(file, made)
+        files.write_curve(file, made)
         own = made.check()
         status, text, errors = run("check", csv, file, "--report", out)
         assert errors == ""
@@ -133,7 +134,7 @@ def test_every_type_of_curve(run, tmp_path):
     np.savetxt(csv, data)
     cubic = CubicSpline(u, data, bc_type="natural")
     spline = make_interp_spline(u, data, k=3, bc_type="natural")
-    files = {
+    written = {
         "power": {"type": "power", "breaks": u.tolist(), "coefficients": cubic.c.tolist()},
         "bspline": {"degree": 3, "knots": spline.t.tolist(), "control": spline.c.tolist()},
         "bezier": {
@@ -142,7 +143,7 @@ def test_every_type_of_curve(run, tmp_path):
         },
     }
     expected = ss.check_shape(data, cubic)
-    for kind, entries in files.items():
+    for kind, entries in written.items():
         status, text, errors = run("check", csv, write(tmp_path / f"{kind}.json", entries))
         assert (status, errors) == (1, ""), kind
         assert text == f"{expected}\n", kind
@@ -164,20 +165,20 @@ def test_a_nurbs_curve_in_a_file(run, tmp_path):
     # Without its weights it is another curve.
     del circle["weights"]
     assert run("check", csv, write(tmp_path / "c.json", circle))[0] == 0
-    assert _files.read_curve(tmp_path / "c.json").curve(0.5)[0] != pytest.approx(half)
+    assert files.read_curve(tmp_path / "c.json").curve(0.5)[0] != pytest.approx(half)
 
 
 def test_written_curves_come_back(tmp_path):
     file = tmp_path / "c.json"
     original = cases.gm_line().preserve()
-    _files.write_curve(file, original)
-    again = _files.read_curve(file)
+    files.write_curve(file, original)
+    again = files.read_curve(file)
     np.testing.assert_array_equal(again.curve.control, original.bezier)
     np.testing.assert_array_equal(again.parameters, original.parameters)
     assert again.boundary == original.boundary
     rational = ss.PiecewiseBezier([[[0, 0], [1, 1]]], [0, 1], weights=[[1, 2]])
-    _files.write_curve(file, rational)
-    np.testing.assert_array_equal(_files.read_curve(file).curve.weights, [[1, 2]])
+    files.write_curve(file, rational)
+    np.testing.assert_array_equal(files.read_curve(file).curve.weights, [[1, 2]])
 
 
 # Tables of points
@@ -204,13 +205,13 @@ EXPECTED = np.array([[0.0, 0.5], [1.0, 1.25], [2.0, -3e-2]])
 def test_tables(text, tmp_path):
     path = tmp_path / "p.csv"
     path.write_bytes(text.encode())
-    found = _tables.read_points(path)
+    found = tables.read_points(path)
     np.testing.assert_array_equal(found.points, EXPECTED)
     assert found.parameters is None
 
 
 def test_a_table_with_parameters(run, tmp_path):
-    found = _tables.read_points(polygons.DATA / "gm_feature_line.csv")
+    found = tables.read_points(polygons.DATA / "gm_feature_line.csv")
     np.testing.assert_array_equal(found.points, polygons.load_points("gm_feature_line"))
     np.testing.assert_array_equal(found.parameters, polygons.load("gm_feature_line")["u"])
     # A quintic has fewer breaks than points: the column says where they are.
@@ -352,7 +353,7 @@ def test_the_examples_of_the_page_on_files(run, tmp_path, monkeypatch):
     write(tmp_path / "arc.json", blocks["json"])
     write(tmp_path / "arc.csv", "1 0\n0 1\n")
     assert run("check", "arc.csv", "arc.json")[0] == 0
-    found = _tables.read_points(write(tmp_path / "p.csv", blocks[""]))
+    found = tables.read_points(write(tmp_path / "p.csv", blocks[""]))
     assert found.points.shape == (2, 3)
     exec(blocks["python"], {})
     write(tmp_path / "p.csv", "0 0\n1 2\n3 2\n4 0\n")

@@ -18,7 +18,8 @@ from matplotlib import image
 import cases
 import polygons
 import shapespline as ss
-from shapespline import _progress, _tables, cli
+from shapespline import _cli
+from shapespline._cli import progress, tables
 
 COMMAND = Path(sys.executable).with_name("shapespline")
 CURVES = {method: family for family, method in cases.METHODS.items()}
@@ -30,7 +31,7 @@ def run(capsys):
     """Return a function that runs the command line and returns status, output and errors."""
 
     def call(*arguments):
-        status = cli.main([str(a) for a in arguments])
+        status = _cli.main([str(a) for a in arguments])
         captured = capsys.readouterr()
         return status, captured.out, captured.err
 
@@ -221,7 +222,7 @@ def test_units_and_names_are_kept(text, names, run, tmp_path):
     assert found == ["u", *names]
     np.testing.assert_allclose(rows[:, 1:], [[0, 0], [1, 2], [2, 0]], atol=1e-12)
     # What is written is read back: points with their parameters.
-    again = _tables.read_points(out)
+    again = tables.read_points(out)
     np.testing.assert_array_equal(again.points, rows[:, 1:])
     np.testing.assert_array_equal(again.parameters, rows[:, 0])
 
@@ -358,7 +359,7 @@ class Terminal(io.StringIO):
 def test_long_work_shows_that_it_goes_on(monkeypatch):
     terminal = Terminal()
     monkeypatch.setattr(sys, "stderr", terminal)
-    with _progress.progress("fitting", after=0.0, every=0.01):
+    with progress.progress("fitting", after=0.0, every=0.01):
         time.sleep(0.2)
     text = terminal.getvalue()
     assert text.count("fitting … 0 s") >= 2
@@ -369,8 +370,8 @@ def test_short_work_and_files_stay_clean(monkeypatch):
     terminal, file = Terminal(), io.StringIO()
     for place in (terminal, file):
         monkeypatch.setattr(sys, "stderr", place)
-        with _progress.progress("fitting"):
+        with progress.progress("fitting"):
             pass
-    with _progress.progress("fitting", after=0.0):
+    with progress.progress("fitting", after=0.0):
         pass
     assert terminal.getvalue() == file.getvalue() == ""

@@ -19,8 +19,9 @@ from hypothesis import strategies as st
 
 import shapespline as ss
 from scale import scaled
-from shapespline import _fit, _tables, cli
-from shapespline._io import FileError
+from shapespline import _cli
+from shapespline._cli import fit, tables
+from shapespline._cli.text_io import FileError
 
 EXPECTED = np.array([[0.0, 0.5], [1.0, 1.25], [2000.0, -0.03]])
 
@@ -30,7 +31,7 @@ def run(capsys):
     """Return a function that runs the command line and returns status, output and errors."""
 
     def call(*arguments):
-        status = cli.main([str(a) for a in arguments])
+        status = _cli.main([str(a) for a in arguments])
         captured = capsys.readouterr()
         return status, captured.out, captured.err
 
@@ -85,13 +86,13 @@ def write(path, text, encoding="utf-8"):
 )
 @pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16"])
 def test_tables_that_a_person_can_read(text, encoding, tmp_path):
-    found = _tables.read_points(write(tmp_path / "p.csv", text, encoding))
+    found = tables.read_points(write(tmp_path / "p.csv", text, encoding))
     np.testing.assert_array_equal(found.points, EXPECTED)
     assert found.parameters is None
 
 
 def test_names_in_the_code_page_of_windows(tmp_path):
-    found = _tables.read_points(write(tmp_path / "p.csv", "x [µm];y [µm]\n0;1\n1;2\n", "cp1252"))
+    found = tables.read_points(write(tmp_path / "p.csv", "x [µm];y [µm]\n0;1\n1;2\n", "cp1252"))
     assert found.names == ["x [µm]", "y [µm]"]
 
 
@@ -100,7 +101,7 @@ def test_names_in_the_code_page_of_windows(tmp_path):
              "time,lon,lat\n0,0,1\n2,1,1\n3,2,2\n", "t y x\n0 1 0\n2 1 1\n3 2 2\n"],
 )  # fmt: skip
 def test_a_column_of_parameters(text, tmp_path):
-    found = _tables.read_points(write(tmp_path / "p.csv", text))
+    found = tables.read_points(write(tmp_path / "p.csv", text))
     np.testing.assert_array_equal(found.parameters, [0, 2, 3])
     np.testing.assert_array_equal(found.points, [[0, 1], [1, 1], [2, 2]])
 
@@ -125,7 +126,7 @@ def test_what_csv_writes_is_read(rows, name, separator, quoting, comma, tmp_path
     path = tmp_path_factory.mktemp("csv") / "p.csv"
     path.write_text(out.getvalue(), encoding="utf-8", newline="")
     try:
-        found = _tables.read_points(path).points
+        found = tables.read_points(path).points
     except FileError:
         # "1,234" between commas may be a thousand.
         assert comma
@@ -172,7 +173,7 @@ def test_tables_that_nobody_can_read(text, line, what, run, tmp_path):
 
 
 def test_decimal_commas_between_blanks_are_not_thousands(tmp_path):
-    found = _tables.read_points(write(tmp_path / "p.csv", "0,500 1,250\n1,500 2,250\n"))
+    found = tables.read_points(write(tmp_path / "p.csv", "0,500 1,250\n1,500 2,250\n"))
     np.testing.assert_array_equal(found.points, [[0.5, 1.25], [1.5, 2.25]])
 
 
@@ -257,7 +258,7 @@ def test_hostile_files_take_linear_time_and_one_short_line(name, command, run, t
 )
 def test_arguments_are_refused_in_one_line(arguments, what, tmp_path, capsys):
     with pytest.raises(SystemExit) as caught:
-        cli.main(["fit", str(write(tmp_path / "p.csv", "0,0\n1,1\n")), *arguments])
+        _cli.main(["fit", str(write(tmp_path / "p.csv", "0,0\n1,1\n")), *arguments])
     assert caught.value.code == 2
     errors = capsys.readouterr().err
     assert errors.count("\n") == 1
@@ -265,7 +266,7 @@ def test_arguments_are_refused_in_one_line(arguments, what, tmp_path, capsys):
     assert len(errors) < 600
 
 
-FLAGS = [action.option_strings[-1] for action in cli._parser()._actions[-1].choices["fit"]._actions
+FLAGS = [action.option_strings[-1] for action in _cli._parser()._actions[-1].choices["fit"]._actions
          if action.option_strings and action.dest not in ("help", "plot")]  # fmt: skip
 VALUES = [
     "0", "1", "-1", "0.5", "nan", "inf", "1e308", "1e-320", "1,0", "1,0,0", "0,0,0", "nan,1,1",
@@ -298,7 +299,7 @@ def test_any_arguments_are_heeded_or_refused_in_one_line(file, options, tmp_path
     os.chdir(folder)
     try:
         with redirect_stdout(io.StringIO()), redirect_stderr(err):
-            status = cli.main(["fit", file, *(f"{flag}={value}" for flag, value in options)])
+            status = _cli.main(["fit", file, *(f"{flag}={value}" for flag, value in options)])
     except SystemExit as end:
         status = end.code
     finally:
@@ -341,7 +342,7 @@ def test_few_samples_are_said(run, tmp_path, monkeypatch):
     assert run("fit", points, "-o", out, "--samples", "50")[2] == ""
     status, _, errors = run("fit", points, "-o", out, "--samples", "49")
     assert (status, errors) == (0, "shapespline: 49 samples are fewer than the 50 points\n")
-    monkeypatch.setattr("shapespline._fit.MOST_UNASKED", 100)
+    monkeypatch.setattr("shapespline._cli.fit.MOST_UNASKED", 100)
     status, _, errors = run("fit", points, "-o", out)
     assert (status, errors) == (
         0, "shapespline: 100 samples, not 20 per segment, for 50 points; see --samples\n"
@@ -438,7 +439,7 @@ def test_names_with_separators_are_written_so_that_they_are_read(run, tmp_path):
     points = write(tmp_path / "p.csv", '"x [mm, east]";"y [""up""]"\n0;0\n1;1\n2;0\n')
     out = tmp_path / "o.csv"
     assert run("fit", points, "-o", out)[0] == 0
-    assert _tables.read_points(out).names == ["x [mm, east]", 'y ["up"]']
+    assert tables.read_points(out).names == ["x [mm, east]", 'y ["up"]']
 
 
 @pytest.mark.parametrize(
@@ -504,8 +505,8 @@ def test_a_fault_of_the_program_does_not_say_that_the_shape_is_lost(monkeypatch,
     def fail(*_):
         raise RuntimeError("no such thing")
 
-    monkeypatch.setattr("shapespline._fit._fit_curve", fail)
-    status = cli.main(["fit", str(write(tmp_path / "p.csv", "0,0\n1,1\n"))])
+    monkeypatch.setattr("shapespline._cli.fit._fit_curve", fail)
+    status = _cli.main(["fit", str(write(tmp_path / "p.csv", "0,0\n1,1\n"))])
     assert status == 70
     assert "RuntimeError: no such thing" in capsys.readouterr().err
 
@@ -522,6 +523,6 @@ def test_a_fault_of_the_program_does_not_say_that_the_shape_is_lost(monkeypatch,
 def test_no_text_of_an_error_is_parsed(argument, index, expected):
     """The attributes of `InputError` say what is refused, and where."""
     ones = np.ones(2)
-    data = _tables.Points(Path("p.csv"), np.ones((2, 2)), ones, [2, 3], ["x", "y"])
-    found = _fit.located(data, ss.InputError("no words", argument, index))
+    data = tables.Points(Path("p.csv"), np.ones((2, 2)), ones, [2, 3], ["x", "y"])
+    found = fit.located(data, ss.InputError("no words", argument, index))
     assert str(found) == expected

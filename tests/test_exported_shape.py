@@ -15,7 +15,7 @@ from scipy.interpolate import BPoly
 import cases
 import shapespline as ss
 from scale import scaled
-from shapespline import _files
+from shapespline._cli import files
 
 #: Row C8 of the faults: called preserved once, and violated as a file.
 FOUND = np.array(
@@ -32,9 +32,9 @@ def rounded(values, digits=15):
 def exports(curve, path):
     """Return the curve in every form it can leave in; all run through the points at its knots."""
     u = curve.knots
-    _files.write_curve(path, curve)
+    files.write_curve(path, curve)
     ppoly, bspline = curve.to_ppoly(), curve.to_bspline()
-    yield "json", _files.read_curve(path).curve
+    yield "json", files.read_curve(path).curve
     yield "bezier", ss.PiecewiseBezier(curve.bezier, u)
     yield "bpoly", BPoly(curve.bezier.swapaxes(0, 1), u)
     yield "15 digits", ss.PiecewiseBezier(rounded(curve.bezier), u)

@@ -10,7 +10,7 @@ import pytest
 
 import polygons
 import shapespline as ss
-from shapespline import cli
+from shapespline import _cli
 
 SQUARE = np.array([[0.0, 0], [3, 0], [3.2, 2], [1, 3], [0, 2]])
 every_dimension = pytest.mark.parametrize("dim", [2, 3])
@@ -197,10 +197,10 @@ def test_other_methods_lack_them():
 def test_the_command_line(tmp_path, capsys):
     csv, file = tmp_path / "p.csv", tmp_path / "c.json"
     np.savetxt(csv, SQUARE, delimiter=",", header="x,y", comments="")
-    status = cli.main(
+    status = _cli.main(
         ["fit", str(csv), "--corners", "1,3", "--max-deviation", "0.3", "-o", str(file)]
     )
     assert status == 0, capsys.readouterr()
-    assert cli.main(["fit", str(csv), "--corners", "1.2"]) == 0
-    assert cli.main(["fit", str(csv), "--method", "nu", "--corners", "1"]) == 2
+    assert _cli.main(["fit", str(csv), "--corners", "1.2"]) == 0
+    assert _cli.main(["fit", str(csv), "--method", "nu", "--corners", "1"]) == 2
     assert "--corners is no option of method nu" in capsys.readouterr().err

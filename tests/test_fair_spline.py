@@ -90,7 +90,7 @@ def test_diagnostics_say_how_and_how_far_from_the_bound():
 
 
 def test_curves_survive_pickling_copying_and_files(tmp_path):
-    from shapespline._files import read_curve, write_curve
+    from shapespline._cli.files import read_curve, write_curve
 
     curve = ss.FairSpline(README)
     for again in (pickle.loads(pickle.dumps(curve)), copy.copy(curve), copy.deepcopy(curve)):

@@ -9,7 +9,7 @@ import pytest
 
 import shapespline as ss
 from scale import scaled
-from shapespline import cli
+from shapespline import _cli
 
 every_dimension = pytest.mark.parametrize("dim", [2, 3])
 every_energy = pytest.mark.parametrize("energy", ["parametric", "bending"])
@@ -175,11 +175,11 @@ def test_what_leads_off_a_run_is_refused(options, text):
 def test_the_option_elsewhere(tmp_path, capsys):
     csv = tmp_path / "p.csv"
     np.savetxt(csv, BENT, delimiter=",", header="x,y", comments="")
-    assert cli.main(["fit", str(csv), "--straight", "--corners", "2"]) == 0
+    assert _cli.main(["fit", str(csv), "--straight", "--corners", "2"]) == 0
     assert "straight on 4 segments" in capsys.readouterr().out
-    assert cli.main(["fit", str(csv), "--straight"]) == 2
+    assert _cli.main(["fit", str(csv), "--straight"]) == 2
     assert "points[2] must be among the corners" in capsys.readouterr().err
-    assert cli.main(["fit", str(csv), "--method", "nu", "--straight"]) == 2
+    assert _cli.main(["fit", str(csv), "--method", "nu", "--straight"]) == 2
     assert "--straight is no option of method nu" in capsys.readouterr().err
     with pytest.raises(TypeError, match="straight must be True or False"):
         ss.FairSpline(BENT, straight=1)

@@ -24,7 +24,7 @@ from hypothesis import strategies as st
 import polygons
 import shapespline as ss
 import threads
-from shapespline import cli
+from shapespline import _cli
 
 posix = pytest.mark.skipif(os.name != "posix", reason="a matter of POSIX")
 
@@ -179,7 +179,7 @@ def test_a_storm_of_threads():
 
 
 def main(capsys, *arguments):
-    status = cli.main([str(a) for a in arguments])
+    status = _cli.main([str(a) for a in arguments])
     return status, capsys.readouterr().err
 
 
@@ -298,7 +298,7 @@ def refused_in_one_line(status, error, path):
 def quiet(*arguments):
     """Run the command line without pytest's fixture, which one example cannot have alone."""
     with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()) as e:
-        status = cli.main([str(a) for a in arguments])
+        status = _cli.main([str(a) for a in arguments])
     return status, e.getvalue()
 
 

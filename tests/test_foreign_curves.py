@@ -15,7 +15,7 @@ from scipy.interpolate import BSpline, CubicSpline, PPoly, make_interp_spline
 import cases
 import polygons
 import shapespline as ss
-from shapespline import _files
+from shapespline._cli import files
 
 # Look-alikes
 
@@ -286,8 +286,8 @@ def test_our_other_families(family, tmp_path):
     report = ss.check_shape(points[::3], curve, parameters=curve.parameters[::3])
     assert report.counts()["torsion"][1] == 21
     assert all(record.location in curve.parameters for record in own.nodes)
-    _files.write_curve(tmp_path / "c.json", curve)
-    again = _files.read_curve(tmp_path / "c.json")
+    files.write_curve(tmp_path / "c.json", curve)
+    again = files.read_curve(tmp_path / "c.json")
     found = ss.check_shape(
         points, again.curve, parameters=again.parameters, boundary=again.boundary
     )

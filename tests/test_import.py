@@ -4,8 +4,11 @@
 
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
+
+import shapespline as ss
 
 #: Optional, or slow to import: whoever does not use them does not wait for them.
 LATER = ("scipy", "matplotlib", "mpl_toolkits", "pandas", "argparse", "doctest", "unittest")
@@ -25,9 +28,18 @@ def test_the_import_brings_only_numpy_and_what_the_module_is_made_of():
     ours = set(run(listing.format("numpy, shapespline")).split()) - numpy
     assert not {name.partition(".")[0] for name in ours} & set(LATER)
     own = {name for name in ours if name.partition(".")[0] == "shapespline"}
-    # The command line, the demo and the files belong to the command.
-    assert not own & {f"shapespline.{n}" for n in ("cli", "_demo", "_fit", "_files", "_summary")}
+    assert not {name for name in own if name.startswith("shapespline._cli")}
     assert len(ours - own) < 40, sorted(ours - own)
+
+
+def test_nothing_outside_knows_the_command_line():
+    package = Path(ss.__file__).parent
+    files = {
+        p.relative_to(package).as_posix()
+        for p in package.rglob("*.py")
+        if "_cli" in p.read_text(encoding="utf-8")
+    }
+    assert {name for name in files if not name.startswith("_cli/")} == {"__main__.py"}
 
 
 @pytest.mark.parametrize("name", LATER[:4])

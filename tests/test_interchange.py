@@ -303,12 +303,12 @@ def test_text_is_escaped_in_svg():
 
 @pytest.mark.parametrize("ending", ["svg", "step", "json"])
 def test_fit_writes_them(ending, tmp_path):
-    from shapespline import cli
+    from shapespline import _cli
 
     points = tmp_path / "p.csv"
     points.write_text("x [cm],y [cm]\n0,0\n1,1\n2,0\n3,1\n", encoding="utf-8")
     out = tmp_path / f"o.{ending}"
-    assert cli.main(["fit", str(points), "-o", str(out)]) == 0
+    assert _cli.main(["fit", str(points), "-o", str(out)]) == 0
     text = out.read_text(encoding="utf-8")
     curve = ss.fit([[0, 0], [1, 1], [2, 0], [3, 1]])
     if ending == "svg":
@@ -320,8 +320,8 @@ def test_fit_writes_them(ending, tmp_path):
 
 
 def test_what_cannot_be_written_from_the_command_line(tmp_path, capsys):
-    from shapespline import cli
+    from shapespline import _cli
 
     points = str(polygons.DATA / "gm_feature_line.csv")
-    assert cli.main(["fit", points, "-o", str(tmp_path / "o.svg")]) == 2
+    assert _cli.main(["fit", points, "-o", str(tmp_path / "o.svg")]) == 2
     assert "in the plane" in capsys.readouterr().err

@@ -21,7 +21,7 @@ import polygons
 import scale
 import shapespline as ss
 from batches import assert_long_batches_agree, assert_same_batches
-from shapespline import _files
+from shapespline._cli import files
 
 _RNG = np.random.default_rng(15)
 #: data sets in space and in the plane
@@ -239,8 +239,8 @@ def test_reports_move_with_the_data(case, rng):
 def exports(curve, path):
     """Return the same curve in every form that it can leave in, with parameters to judge it by."""
     u, boundary = curve.parameters, curve.boundary
-    _files.write_curve(path, curve)
-    stored = _files.read_curve(path)
+    files.write_curve(path, curve)
+    stored = files.read_curve(path)
     given = {"parameters": u, "boundary": boundary}
     forms = {
         "pieces": (ss.PiecewiseBezier(curve.bezier, curve.knots), given),

@@ -10,7 +10,7 @@ from scipy.interpolate import BPoly, CubicSpline, PchipInterpolator, PPoly, make
 
 import polygons
 import shapespline as ss
-from shapespline import _convert, cli
+from shapespline import _cli, _convert
 
 
 def bernstein(polynomial):
@@ -116,7 +116,7 @@ def test_check_refuses_what_is_no_function_through_the_points(entries, what, cap
     curve, points = tmp_path / "c.json", tmp_path / "p.csv"
     curve.write_text(json.dumps(entries), encoding="utf-8")
     points.write_text("0,0\n2,1\n3,0\n", encoding="utf-8")
-    status = cli.main(["check", str(points), str(curve), "--monotone"])
+    status = _cli.main(["check", str(points), str(curve), "--monotone"])
     errors = capsys.readouterr().err
     assert status == 2
     assert what in errors

@@ -10,7 +10,7 @@ import pytest
 import cases
 import polygons
 import shapespline as ss
-from shapespline import cli
+from shapespline import _cli
 
 every_family = pytest.mark.parametrize("family", cases.FAMILIES, ids=lambda f: f.__name__)
 every_dimension = pytest.mark.parametrize("dim", [2, 3])
@@ -78,9 +78,9 @@ def test_files_and_the_command_line(method, end, rng, tmp_path, capsys):
     np.savetxt(csv, points, delimiter=",", header="x,y", comments="", fmt="%.17g")
     text = ",".join(repr(float(x)) for x in getattr(boundary, end))
     command = ["fit", str(csv), "--method", method, f"--{end}-tangent={text}", "-o", str(file)]
-    assert cli.main(command) == 0, capsys.readouterr()
+    assert _cli.main(command) == 0, capsys.readouterr()
     other = {"start": "end", "end": "start"}[end]
     entries = json.loads(file.read_text())["boundary"]
     assert entries[other] is None
     assert entries[end] == getattr(boundary, end).tolist()
-    assert cli.main(["check", str(csv), str(file)]) == 0, capsys.readouterr()
+    assert _cli.main(["check", str(csv), str(file)]) == 0, capsys.readouterr()

@@ -12,7 +12,8 @@ import cases
 import polygons
 import shapespline as ss
 from scale import scaled
-from shapespline import _files, cli
+from shapespline import _cli
+from shapespline._cli import files
 
 every_family = pytest.mark.parametrize("family", cases.FAMILIES, ids=lambda c: c.__name__)
 
@@ -128,17 +129,17 @@ def test_files_keep_them(method, rng, tmp_path, capsys):
     table, file = tmp_path / "p.csv", tmp_path / "c.json"
     np.savetxt(table, points_of(rng), delimiter=",", header="x,y,z", comments="")
     fit = ["fit", str(table), "--method", method, "--tolerance", "0.3", "-o", str(file)]
-    assert cli.main(fit) == 0
-    assert _files.read_curve(file).fit_options["tolerance"] == 0.3
-    assert cli.main(["check", str(table), str(file)]) == 0
+    assert _cli.main(fit) == 0
+    assert files.read_curve(file).fit_options["tolerance"] == 0.3
+    assert _cli.main(["check", str(table), str(file)]) == 0
     # By default the same curve does not pass.
-    assert cli.main(["check", str(table), str(file), "--tolerance", "1e-9"]) == 1
+    assert _cli.main(["check", str(table), str(file), "--tolerance", "1e-9"]) == 1
     if method == "fair":
         return
     # A curve of given tension was asked for nothing.
     plain = {"tension": "--tangent-scale=0.5"}.get(method, "--tension=0.5")
-    cli.main(["fit", str(table), "--method", method, plain, "-o", str(file)])
-    assert _files.read_curve(file).fit_options is None
+    _cli.main(["fit", str(table), "--method", method, plain, "-o", str(file)])
+    assert files.read_curve(file).fit_options is None
     capsys.readouterr()
 
 
@@ -157,12 +158,12 @@ def test_files_keep_them(method, rng, tmp_path, capsys):
 def test_bad_options_in_a_file_are_refused_in_one_line(given, message, tmp_path, capsys):
     table, file = tmp_path / "p.csv", tmp_path / "c.json"
     table.write_text("x,y\n0,0\n1,0\n1,1\n")
-    _files.write_curve(file, ss.NuSpline([[0, 0], [1, 0], [1, 1]]))
+    files.write_curve(file, ss.NuSpline([[0, 0], [1, 0], [1, 1]]))
     text = file.read_text(encoding="utf-8")
     file.write_text(
         text.replace('"type"', f'"fit_options": {given},\n  "type"', 1), encoding="utf-8"
     )
-    assert cli.main(["check", str(table), str(file)]) == 2
+    assert _cli.main(["check", str(table), str(file)]) == 2
     error = capsys.readouterr().err
     assert error.count("\n") == 1
     assert message in error

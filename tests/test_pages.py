@@ -14,7 +14,7 @@ from scipy.interpolate import CubicSpline
 
 import polygons
 import shapespline as ss
-from shapespline import cli
+from shapespline import _cli
 
 ROOT = Path(__file__).parent.parent
 README = ROOT / "README.md"
@@ -57,7 +57,7 @@ def test_commands(page, tmp_path, monkeypatch, capsys):
             command, _, expected = part.partition("\n")
             program, *arguments = shlex.split(command)
             assert program == "shapespline"
-            status = cli.main(arguments)
+            status = _cli.main(arguments)
             found = capsys.readouterr()
             assert found.err == ""
             assert status == ("shape violated" in found.out)

@@ -12,7 +12,8 @@ import cases
 import polygons
 import shapespline as ss
 from scale import scaled
-from shapespline import _files, cli
+from shapespline import _cli
+from shapespline._cli import files
 
 SIGNS = ("convexity", "inflection", "torsion")
 every_family = pytest.mark.parametrize("family", cases.FAMILIES)
@@ -94,7 +95,7 @@ def test_fits_keep_what_is_known(family, dim, rng, tmp_path):
         assert sum(n for _, n in curve.check(resolution=0).counts().values()) > sum(
             n for _, n in report.counts().values()
         )
-        _files.write_curve(tmp_path / "c.json", curve)
+        files.write_curve(tmp_path / "c.json", curve)
         assert json.loads((tmp_path / "c.json").read_text())["fit_options"]["resolution"] == 0.1
 
 
@@ -135,10 +136,10 @@ def test_the_command_line(tmp_path, capsys, rng):
     csv, file, out = tmp_path / "p.csv", tmp_path / "c.json", tmp_path / "r.json"
     np.savetxt(csv, points, delimiter=",", header="x,y,z", comments="", fmt="%.17g")
     assert (
-        cli.main(["fit", str(csv), "--method", "nu", "--resolution", "0.2", "-o", str(file)]) == 0
+        _cli.main(["fit", str(csv), "--method", "nu", "--resolution", "0.2", "-o", str(file)]) == 0
     )
-    assert cli.main(["check", str(csv), str(file), "--report", str(out)]) == 0
+    assert _cli.main(["check", str(csv), str(file), "--report", str(out)]) == 0
     assert json.loads(out.read_text())["resolution"] == 0.2
-    cli.main(["check", str(csv), str(file), "--resolution", "0", "--report", str(out)])
+    _cli.main(["check", str(csv), str(file), "--resolution", "0", "--report", str(out)])
     assert json.loads(out.read_text())["resolution"] == 0
     capsys.readouterr()

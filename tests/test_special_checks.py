@@ -11,7 +11,8 @@ import pytest
 import polygons
 import shapespline as ss
 from scale import scaled
-from shapespline import _files, cli
+from shapespline import _cli
+from shapespline._cli import files
 from test_exported_shape import rounded
 from test_fair_straight import with_runs
 
@@ -51,14 +52,14 @@ def test_every_form_is_judged_as_the_curve_is(dim, closed, rng, tmp_path):
             # Files say both by themselves.
             header = ",".join("xyz"[:dim])
             np.savetxt(csv, curve.points, delimiter=",", header=header, comments="", fmt="%.17g")
-            _files.write_curve(file, curve)
+            files.write_curve(file, curve)
             entries = json.loads(file.read_text(encoding="utf-8"))
             assert entries["corners"] == list(curve.corners)
             assert entries["straight"] == list(curve.straight)
-            assert cli.main(["check", str(csv), str(file)]) == 0
+            assert _cli.main(["check", str(csv), str(file)]) == 0
             entries["control"] = rounded(np.array(entries["control"])).tolist()
             file.write_text(json.dumps(entries), encoding="utf-8")
-            assert cli.main(["check", str(csv), str(file)]) == 0
+            assert _cli.main(["check", str(csv), str(file)]) == 0
 
 
 def test_the_option_corners(rng, tmp_path, capsys):
@@ -66,21 +67,21 @@ def test_the_option_corners(rng, tmp_path, capsys):
     curve = ss.FairSpline(points, corners=[4])
     csv, file = tmp_path / "p.csv", tmp_path / "c.json"
     np.savetxt(csv, points, delimiter=",", header="x,y", comments="", fmt="%.17g")
-    _files.write_curve(file, curve)
+    files.write_curve(file, curve)
     entries = json.loads(file.read_text(encoding="utf-8"))
     file.write_text(json.dumps({**entries, "corners": []}), encoding="utf-8")
-    status = cli.main(["check", str(csv), str(file)])
-    assert cli.main(["check", str(csv), str(file), "--corners", "4"]) == 0
+    status = _cli.main(["check", str(csv), str(file)])
+    assert _cli.main(["check", str(csv), str(file), "--corners", "4"]) == 0
     assert status == (0 if ss.check_shape(points, curve, corners=[]).ok else 1)
     capsys.readouterr()
-    assert cli.main(["check", str(csv), str(file), "--corners", "0"]) == 2
+    assert _cli.main(["check", str(csv), str(file), "--corners", "0"]) == 2
     assert "corners[0] must be the index of an inner point" in capsys.readouterr().err
     file.write_text(json.dumps({**entries, "corners": [40]}), encoding="utf-8")
-    assert cli.main(["check", str(csv), str(file)]) == 2
+    assert _cli.main(["check", str(csv), str(file)]) == 2
     assert "corners[0] must be the index of a point" in capsys.readouterr().err
     for bad in ("four", [-1], [1.5], [True]):
         file.write_text(json.dumps({**entries, "corners": bad}), encoding="utf-8")
-        assert cli.main(["check", str(csv), str(file)]) == 2
+        assert _cli.main(["check", str(csv), str(file)]) == 2
         assert "'corners' must be a list of indices" in capsys.readouterr().err
 
 

@@ -4,7 +4,7 @@
 
 import sys
 
-from shapespline.cli import main
+from shapespline._cli import main
 
 if __name__ == "__main__":
     sys.exit(main())

@@ -19,7 +19,7 @@ from scipy.interpolate import (
 )
 
 import shapespline as ss
-from shapespline._tables import read_points
+from shapespline._cli.tables import read_points
 
 DATA = Path(__file__).resolve().parents[3] / "tests" / "data"
 CRITERIA = ("convexity", "inflection", "torsion", "coplanarity", "collinearity")

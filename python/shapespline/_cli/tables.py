@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from shapespline._cells import (
+from shapespline._cli.cells import (
     SEPARATORS,
     Lines,
     is_data,
@@ -29,7 +29,7 @@ from shapespline._cells import (
     split,
     value,
 )
-from shapespline._io import FileError, shortened, text_of
+from shapespline._cli.text_io import FileError, shortened, text_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

@@ -10,7 +10,7 @@ import re
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from shapespline._io import FileError
+from shapespline._cli.text_io import FileError
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

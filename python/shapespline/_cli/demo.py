@@ -14,8 +14,8 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from shapespline import FairSpline, NuSpline, Tangents, fit, plot
+from shapespline._cli.progress import progress
 from shapespline._methods import METHODS
-from shapespline._progress import progress
 from shapespline.plot._style import STYLE
 
 if TYPE_CHECKING:

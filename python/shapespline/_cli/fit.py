@@ -21,14 +21,22 @@ from shapespline import (
     Tangents,
     interchange,
 )
+from shapespline._cli.files import write_curve
+from shapespline._cli.options import add_fit_options
+from shapespline._cli.progress import progress
+from shapespline._cli.tables import read_function, read_points, unit_of, write_table
+from shapespline._cli.text_io import (
+    STREAM,
+    FileError,
+    UsageError,
+    name_of,
+    refuse_overwriting,
+    write,
+)
 from shapespline._convert import piecewise
-from shapespline._files import write_curve
-from shapespline._io import STREAM, FileError, UsageError, name_of, refuse_overwriting, write
 from shapespline._kinds import KINDS
 from shapespline._methods import METHODS, Method
 from shapespline._monotone_check import check as check_function
-from shapespline._progress import progress
-from shapespline._tables import read_function, read_points, unit_of, write_table
 
 if TYPE_CHECKING:
     import argparse
@@ -36,11 +44,12 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from shapespline._tables import Points
+    from shapespline._cli.options import Parser
+    from shapespline._cli.tables import Points
 
     Floats = NDArray[np.float64]
 
-__all__ = ["OPTIONS", "located", "run"]
+__all__ = ["add_fit", "located", "run"]
 
 _CHECK = ("criteria", "resolution", "coplanarity", "collinearity", "tolerance")
 _CURVE = ("parameters", "boundary", "closed", "repeated", "start_tangent", "end_tangent")
@@ -238,7 +247,7 @@ def _title(data: Points) -> str:
 
 def _plot(fit: _Fit, data: Points, path: Path) -> None:
     try:
-        from shapespline._summary import draw
+        from shapespline._cli.summary import draw
     except ModuleNotFoundError as error:
         raise UsageError(
             f"figures are drawn with Matplotlib, but {error.name} is not installed; "
@@ -315,3 +324,17 @@ def run(options: argparse.Namespace) -> int:
     if fit.failure:
         _say(fit.failure)
     return 0 if fit.report.ok else 1
+
+
+def add_fit(commands: argparse._SubParsersAction[Parser]) -> None:
+    """Add the command to those of the parser."""
+    text = "fit a curve or a monotone function that keeps the shape of points in a file"
+    parser = commands.add_parser(
+        "fit",
+        help=text,
+        description=text.capitalize() + ".",
+        epilog="Exit status: 0 when the shape is kept, 1 when it is not, 2 for bad input. Formats "
+        "of the files: the page Files of the documentation.",
+    )
+    add_fit_options(parser, OPTIONS)
+    parser.set_defaults(run=run)

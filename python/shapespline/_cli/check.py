@@ -1,99 +1,48 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
 
-"""The command ``shapespline``.
-
-One function a command, each with a parser of its own: a new command is one more `_add_…`.
-Exit status: 0 when done, 1 when the shape does not hold, 2 for bad input (one line on stderr), and
-70 for a fault of the program itself.
-"""
+"""The command ``shapespline check``: whether a curve keeps the shape of points, both from files."""
 
 from __future__ import annotations
 
 import json
-import os
 import sys
-import traceback
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 import shapespline
-from shapespline import _core, _fit
-from shapespline._files import read_curve
-from shapespline._io import (
+from shapespline import _core
+from shapespline._cli.files import read_curve
+from shapespline._cli.options import (
+    BOUNDARIES,
+    Parser,
+    add_closing,
+    add_corners,
+    add_points,
+    names,
+    real,
+)
+from shapespline._cli.progress import progress
+from shapespline._cli.tables import read_function, read_points
+from shapespline._cli.text_io import (
     STREAM,
     FileError,
     UsageError,
     name_of,
     refuse_overwriting,
-    shortened,
     write,
 )
 from shapespline._monotone_check import check as check_function
 from shapespline._monotone_check import increasing
-from shapespline._options import (
-    BOUNDARIES,
-    Parser,
-    add_closing,
-    add_corners,
-    add_fit_options,
-    add_points,
-    names,
-    real,
-)
-from shapespline._progress import progress
-from shapespline._tables import read_function, read_points
 
 if TYPE_CHECKING:
     import argparse
-    from collections.abc import Sequence
 
-    from shapespline._files import CurveFile
-    from shapespline._tables import Points
+    from shapespline._cli.files import CurveFile
+    from shapespline._cli.tables import Points
 
-
-def _demo(options: argparse.Namespace) -> int:
-    try:
-        from shapespline import _demo
-    except ModuleNotFoundError as error:
-        raise UsageError(
-            f"the demo draws with Matplotlib, but {error.name} is not installed; "
-            'get it with: pip install "shapespline[plot]"'
-        ) from None
-    out: Path = options.out
-    try:
-        out.mkdir(parents=True, exist_ok=True)
-        return _demo.run(out)
-    except OSError as error:
-        raise UsageError(f"cannot write to {error.filename or out}: {error.strerror}") from None
-
-
-def _add_demo(commands: argparse._SubParsersAction[Parser]) -> None:
-    text = "fit real data, print what was wrong and what was mended, draw figures"
-    parser = commands.add_parser("demo", help=text, description=text.capitalize() + ".")
-    parser.add_argument(
-        "--out",
-        type=Path,
-        default=Path("shapespline-demo"),
-        metavar="DIR",
-        help="directory for the figures, made where missing (default: %(default)s)",
-    )
-    parser.set_defaults(run=_demo)
-
-
-def _add_fit(commands: argparse._SubParsersAction[Parser]) -> None:
-    text = "fit a curve or a monotone function that keeps the shape of points in a file"
-    parser = commands.add_parser(
-        "fit",
-        help=text,
-        description=text.capitalize() + ".",
-        epilog="Exit status: 0 when the shape is kept, 1 when it is not, 2 for bad input. Formats "
-        "of the files: the page Files of the documentation.",
-    )
-    add_fit_options(parser, _fit.OPTIONS)
-    parser.set_defaults(run=_fit.run)
-
+__all__ = ["add_check"]
 
 #: The options of a check.
 CHECKED = ("criteria", "resolution", "coplanarity", "collinearity", "tolerance")
@@ -130,7 +79,7 @@ def _closing(options: argparse.Namespace, curve: CurveFile, points: int) -> tupl
     return closed, repeated
 
 
-def _check(options: argparse.Namespace) -> int:
+def _run(options: argparse.Namespace) -> int:
     if options.points == options.curve == STREAM:
         raise UsageError("points and curve cannot both be standard input")
     refuse_overwriting([options.points, options.curve], filter(None, [options.report]))
@@ -177,7 +126,8 @@ def _check(options: argparse.Namespace) -> int:
     return 0 if report.ok else 1
 
 
-def _add_check(commands: argparse._SubParsersAction[Parser]) -> None:
+def add_check(commands: argparse._SubParsersAction[Parser]) -> None:
+    """Add the command to those of the parser."""
     text = "check whether a curve, whoever made it, keeps the shape of the points it passes through"
     parser = commands.add_parser(
         "check",
@@ -229,53 +179,4 @@ def _add_check(commands: argparse._SubParsersAction[Parser]) -> None:
     parser.add_argument(
         "--report", type=Path, metavar="OUT.json", help="write the whole report to this file"
     )
-    parser.set_defaults(run=_check)
-
-
-def _parser() -> Parser:
-    parser = Parser(
-        prog="shapespline", description="Splines that interpolate data and keep its shape."
-    )
-    parser.add_argument(
-        "--version", action="version", version=f"%(prog)s {shapespline.__version__}"
-    )
-    commands = parser.add_subparsers(required=True, metavar="COMMAND")
-    _add_demo(commands)
-    _add_fit(commands)
-    _add_check(commands)
-    return parser
-
-
-def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the command line and return the exit status."""
-    options = _parser().parse_args(arguments)
-    try:
-        status: int = options.run(options)
-        sys.stdout.flush()
-    except (UsageError, FileError) as error:
-        print(f"shapespline: {error}", file=sys.stderr)
-        return 2
-    except MemoryError as error:
-        why = f": {shortened(str(error), 200)}" if str(error) else ""
-        print(f"shapespline: the memory does not suffice{why}", file=sys.stderr)
-        return 2
-    except KeyboardInterrupt:
-        print("shapespline: interrupted", file=sys.stderr)
-        return 130
-    except OSError as error:
-        # Files have errors of their own: this is standard output. Python would complain once more
-        # when it closes it.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        if isinstance(error, BrokenPipeError):
-            return 141  # whoever read the output has seen enough (`| head`)
-        print(f"shapespline: standard output: cannot be written: {error.strerror}", file=sys.stderr)
-        return 2
-    except Exception:
-        # A fault of the program: not exit status 1, which says that the shape does not hold.
-        traceback.print_exc()
-        return 70
-    return status
-
-
-if __name__ == "__main__":
-    sys.exit(main())
+    parser.set_defaults(run=_run)

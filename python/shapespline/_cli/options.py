@@ -10,8 +10,8 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, NoReturn
 
-from shapespline._cells import number
-from shapespline._io import LONGEST, shortened
+from shapespline._cli.cells import number
+from shapespline._cli.text_io import LONGEST, shortened
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 import numpy as np
 
 from shapespline import _methods
+from shapespline._cli.text_io import FileError, shortened, text_of, write
 from shapespline._convert import piecewise
 from shapespline._core import (
     FairSpline,
@@ -26,7 +27,6 @@ from shapespline._core import (
     Tangents,
 )
 from shapespline._errors import InputError
-from shapespline._io import FileError, shortened, text_of, write
 from shapespline._kinds import KINDS
 
 if TYPE_CHECKING:

@@ -12,7 +12,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from shapespline import SpaceCurve, plot
-from shapespline._io import shortened
+from shapespline._cli.text_io import shortened
 from shapespline.plot._style import STYLE
 
 if TYPE_CHECKING:
