@@ -4,12 +4,14 @@
 
 import doctest
 import inspect
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 import shapespline as ss
 
+ROOT = Path(__file__).parent.parent
 FLAGS = doctest.NORMALIZE_WHITESPACE | doctest.ELLIPSIS
 
 
@@ -62,6 +64,17 @@ def test_the_module_offers_what_it_should():
     assert {"plot.curve", "plot.curvature_comb", "plot.interpolant"} <= set(PUBLIC)
     assert issubclass(ss.NuSpline, ss.SpaceCurve)
     assert ss.__doc__
+
+
+def test_the_stub_carries_the_docstrings_of_the_extension(monkeypatch):
+    if not (ROOT / ".ci").exists():
+        pytest.skip("not in the tree")
+    monkeypatch.syspath_prepend(str(ROOT / ".ci"))
+    import stub
+
+    text = stub.STUB.read_text(encoding="utf-8")
+    assert stub.documented(text) == text, "run: python .ci/stub.py"
+    assert text.count(">>> ") > 200  # examples
 
 
 @pytest.mark.parametrize("name", PUBLIC)

@@ -113,7 +113,7 @@ impl CatmullRom {
         Ok(PyClassInitializer::from(base).add_subclass(Self))
     }
 
-    /// The Catmull–Rom curve with the largest handles that keep the shape of the points.
+    /// Fit the Catmull–Rom curve with the largest handles that keep the shape of the points.
     ///
     /// Parameters
     /// ----------

@@ -209,7 +209,7 @@ impl FairSpline {
         curve.map_or("", |curve| options::energy_name(curve.energy()))
     }
 
-    /// The curve as a B-spline of SciPy.
+    /// Return the curve as a B-spline of SciPy.
     ///
     /// Returns
     /// -------

@@ -97,7 +97,7 @@ fn run<'py>(
     Ok((PyTuple::new(py, curves)?, errors))
 }
 
-/// Fits every curve of a collection.
+/// Fit every curve of a collection.
 #[pyfunction]
 // One argument an option: the Python function beside gives them by name.
 #[allow(clippy::too_many_arguments)]

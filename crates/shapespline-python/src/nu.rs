@@ -104,7 +104,7 @@ impl NuSpline {
         Ok(PyClassInitializer::from(base).add_subclass(Self))
     }
 
-    /// The ν-spline whose tension keeps the shape of the points.
+    /// Fit the ν-spline whose tension keeps the shape of the points.
     ///
     /// Tension is raised at the nodes around each violation until no criterion fails; then, by
     /// default, it is lowered again as far as the criteria allow.

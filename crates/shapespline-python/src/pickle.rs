@@ -146,7 +146,7 @@ fn whole<T: DeserializeOwned>(mut bytes: &[u8]) -> PyResult<T> {
     if bytes.is_empty() { Ok(value) } else { Err(damaged("it goes on behind its end")) }
 }
 
-/// Makes the object of a pickle.
+/// Make the object of a pickle.
 #[pyfunction]
 pub(crate) fn _from_bytes<'py>(py: Python<'py>, data: &[u8]) -> PyResult<Bound<'py, PyAny>> {
     let (kind, mut bytes) = without_gil(py, 0, || opened(data))?;

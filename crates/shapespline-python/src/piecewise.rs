@@ -147,7 +147,7 @@ impl PiecewiseBezier {
         curve.map(Self::of).map_err(input_error)
     }
 
-    /// The curve of a B-spline, or of a NURBS curve, on its base interval.
+    /// Make the curve of a B-spline, or of a NURBS curve, on its base interval.
     ///
     /// Parameters
     /// ----------
@@ -198,7 +198,7 @@ impl PiecewiseBezier {
         curve.map(Self::of).map_err(input_error)
     }
 
-    /// The curve of a piecewise polynomial in powers, as SciPy's ``PPoly`` holds it.
+    /// Make the curve of a piecewise polynomial in powers, as SciPy's ``PPoly`` holds it.
     ///
     /// Parameters
     /// ----------

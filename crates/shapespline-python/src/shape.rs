@@ -33,7 +33,7 @@ use crate::{
 /// Directions of the curve at its two ends that differ by a smaller sine close it smoothly.
 const SMOOTH: f64 = 1e-6;
 
-/// The report on points and a curve through them.
+/// Return the report on points and a curve through them.
 #[pyfunction]
 #[allow(clippy::too_many_arguments)]
 pub(crate) fn _check_shape(
@@ -230,7 +230,7 @@ fn finished(py: Python<'_>, count: Option<InflectionCount>) -> PyResult<Counted<
     count.map(|count| counted(py, count)).ok_or_else(broken_off)
 }
 
-/// The discrete shape of points, by the names of its parts.
+/// Return the discrete shape of points, by the names of its parts.
 #[pyfunction]
 #[allow(clippy::too_many_arguments)]
 pub(crate) fn _polygon_shape<'py>(

@@ -201,7 +201,7 @@ impl TensionSpline {
         Ok(PyClassInitializer::from(base).add_subclass(Self))
     }
 
-    /// The C² tension cubic whose λ keep the shape of the points.
+    /// Fit the C² tension cubic whose λ keep the shape of the points.
     ///
     /// λ is lowered at the nodes around each violation until no criterion fails, both λ of a node
     /// together; then, by default, it is raised again as far as the criteria allow.
@@ -342,7 +342,7 @@ impl TensionSpline {
         (side(0), side(1))
     }
 
-    /// The parameter of ``bezier``, ``to_bspline()`` and ``to_ppoly()`` at the parameter of the curve.
+    /// Return the parameter of ``bezier``, ``to_bspline()`` and ``to_ppoly()`` at that of the curve.
     ///
     /// The parameter s in which the curve is C² is no polynomial's: the local parameter t of a segment
     /// is found from the monotone cubic s(t). The image is a piecewise cubic in t, which those three

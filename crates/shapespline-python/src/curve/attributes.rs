@@ -193,7 +193,7 @@ impl SpaceCurve {
         .map(Some)
     }
 
-    /// What the fit was asked for, by the names of `check`; `None` of a curve of given tension. For files.
+    /// Return the options of the fit by the names of `check`, `None` for given tension. For files.
     fn _fit_options<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyDict>>> {
         let Some(search) = &self.search else { return Ok(None) };
         let Asked { criteria, tolerances, .. } = search.asked;

@@ -262,7 +262,7 @@ impl SpaceCurve {
         self.scalar(py, &u, move |curve, u| curve.path().torsion(u, side))
     }
 
-    /// The Frenet frame: unit tangent T, principal normal N and binormal B = T × N.
+    /// Return the Frenet frame: unit tangent T, principal normal N and binormal B = T × N.
     ///
     /// Parameters
     /// ----------

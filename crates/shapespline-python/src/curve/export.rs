@@ -57,7 +57,7 @@ impl SpaceCurve {
         shaped(py, values, &[segments, 4, columns])
     }
 
-    /// The curve as a B-spline of SciPy.
+    /// Return the curve as a B-spline of SciPy.
     ///
     /// Returns
     /// -------
@@ -97,7 +97,7 @@ impl SpaceCurve {
         class.call((PyArray1::from_vec(py, t), coefficients, 3), Some(&self.extrapolate(py)?))
     }
 
-    /// The curve as a piecewise polynomial of SciPy.
+    /// Return the curve as a piecewise polynomial of SciPy.
     ///
     /// Returns
     /// -------

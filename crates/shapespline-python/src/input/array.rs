@@ -158,7 +158,7 @@ pub(crate) fn finite(argument: &str, array: &Array<'_>) -> PyResult<()> {
     Err(must(argument, &index_of(flat, array.shape()), "be finite", array.values()[flat]))
 }
 
-/// An array of f64 for what of the package is written in Python, with the same refusals.
+/// Return an array of f64 for the Python side of the package, with the same refusals.
 #[pyfunction]
 pub(crate) fn _floats<'py>(
     argument: &str,

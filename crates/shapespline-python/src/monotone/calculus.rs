@@ -10,7 +10,7 @@ use super::{fits::Column, function::PiecewisePolynomial, options};
 
 #[pymethods]
 impl PiecewisePolynomial {
-    /// The derivative as a function.
+    /// Return the derivative as a function.
     ///
     /// Parameters
     /// ----------
@@ -36,7 +36,7 @@ impl PiecewisePolynomial {
         Self::of(self.fits.derivative(py, nu), &self.layout).into_python(py)
     }
 
-    /// An antiderivative as a function: zero at the first knot.
+    /// Return an antiderivative as a function: zero at the first knot.
     ///
     /// Parameters
     /// ----------
@@ -63,7 +63,7 @@ impl PiecewisePolynomial {
         Self::of(self.fits.antiderivative(py, nu), &self.layout).into_python(py)
     }
 
-    /// The definite integral from a to b.
+    /// Return the definite integral from a to b.
     ///
     /// Parameters
     /// ----------

@@ -164,7 +164,7 @@ impl MonotoneCubic {
     }
 }
 
-/// The least bending energy ``∫ f''² dx`` of any monotone function through the data.
+/// Return the least bending energy ``∫ f''² dx`` of any monotone function through the data.
 ///
 /// Parameters
 /// ----------

@@ -51,7 +51,7 @@ impl PiecewisePolynomial {
         shaped(py, values, &self.layout.shape(&[order, segments]))
     }
 
-    /// The function as a piecewise polynomial of SciPy in Bernstein form.
+    /// Return the function as a piecewise polynomial of SciPy in Bernstein form.
     ///
     /// Returns
     /// -------
@@ -78,7 +78,7 @@ impl PiecewisePolynomial {
         class.call((self._bernstein(py)?, shaped(py, x, &[n])?), Some(&options))
     }
 
-    /// The function as a piecewise polynomial of SciPy in the power basis.
+    /// Return the function as a piecewise polynomial of SciPy in the power basis.
     ///
     /// Returns
     /// -------
@@ -101,7 +101,7 @@ impl PiecewisePolynomial {
         class.call_method("from_bernstein_basis", (self.to_bpoly(py)?,), Some(&options))
     }
 
-    /// The function as a B-spline of SciPy.
+    /// Return the function as a B-spline of SciPy.
     ///
     /// Returns
     /// -------

@@ -13,7 +13,7 @@ use crate::{
 
 #[pymethods]
 impl PiecewiseRows {
-    /// The derivatives of all rows as functions.
+    /// Return the derivatives of all rows as functions.
     ///
     /// Parameters
     /// ----------
@@ -68,7 +68,7 @@ impl PiecewiseRows {
         Self::of(self.fits.antiderivative(py, nu), self.ragged).into_python(py)
     }
 
-    /// The definite integral of every row.
+    /// Return the definite integral of every row.
     ///
     /// Parameters
     /// ----------

@@ -283,7 +283,7 @@ impl MonotoneRows {
         slf.as_super().get().fits.fairness().map(options::energy_name)
     }
 
-    /// The inverse functions: in every row the x with f(x) = y.
+    /// Evaluate the inverse functions: in every row the x with f(x) = y.
     ///
     /// Parameters
     /// ----------

@@ -100,7 +100,7 @@ impl MonotoneSpline {
         }
     }
 
-    /// The inverse function: the x with f(x) = y.
+    /// Evaluate the inverse function: the x with f(x) = y.
     ///
     /// Parameters
     /// ----------

@@ -26,7 +26,7 @@ fn plain<'py>(py: Python<'py>, r: &Record) -> PyResult<Bound<'py, PyDict>> {
 
 #[pymethods]
 impl ShapeReport {
-    /// The report as plain data that ``json.dumps`` takes.
+    /// Return the report as plain data that ``json.dumps`` takes.
     ///
     /// Returns
     /// -------
@@ -83,7 +83,7 @@ impl ShapeReport {
         Ok(dict)
     }
 
-    /// The records of all segments as a pandas DataFrame.
+    /// Return the records of all segments as a pandas DataFrame.
     ///
     /// Returns
     /// -------
