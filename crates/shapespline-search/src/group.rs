@@ -9,13 +9,9 @@ use crate::{
     state::{AROUND, State},
 };
 
-/// How exactly the least factor of a tension is found, and the part of itself that is then added, so that
-/// changes far away, which are felt little, do not bring criteria to the brink.
+/// How exactly the least factor of a tension is found in the end, and the part of itself that is then added, so
+/// that changes far away, which are felt little, do not bring criteria to the brink.
 pub(crate) const RESOLUTION: f64 = 0.01;
-
-/// A tension that was lowered before is tried again if less by this part of itself seems to do: more than
-/// what was added so as not to be on the brink.
-pub(crate) const LEAST: f64 = 2.5 * RESOLUTION;
 
 /// Segments on each side of a node that tell how far its tension can be lowered. A segment beyond that it
 /// would break feels it so little that rounding would decide how far it goes: it goes half as far then.
@@ -27,14 +23,22 @@ pub(crate) struct Group {
     full: Vec<(usize, f64)>,
     /// Scratch: the same times a factor.
     scaled: Vec<(usize, f64)>,
+    /// How exactly the least factor is found by trials.
+    resolution: f64,
 }
 
 impl Group {
     /// Some tensions, as they are.
-    pub(crate) fn of(indices: &[usize], tension: &[f64]) -> Self {
+    pub(crate) fn of(indices: &[usize], tension: &[f64], resolution: f64) -> Self {
         let mut full: Vec<_> = indices.iter().map(|&k| (k, tension[k])).collect();
         full.sort_unstable_by_key(|(k, _)| *k);
-        Self { scaled: Vec::with_capacity(full.len()), full }
+        Self { scaled: Vec::with_capacity(full.len()), full, resolution }
+    }
+
+    /// A tension that was lowered before is tried again if less by this part of itself seems to do: more than
+    /// what was added so as not to be on the brink.
+    pub(crate) fn least(&self) -> f64 {
+        2.5 * self.resolution
     }
 
     /// The changes that bring the tensions to a factor of what they were.
@@ -50,7 +54,7 @@ impl Group {
     /// Trials of the segments around them tell of nearly every factor whether it breaks a criterion, at
     /// a fraction of what it costs to set the tensions. What they find is set and checked as a whole.
     ///
-    /// `again`: whether [`LEAST`] less is known to do as far as trials tell, and most likely not much less.
+    /// `again`: whether [`Self::least`] less is known to do as far as trials tell, and most likely not much less.
     pub(crate) fn lower<F: TensionFamily>(
         &mut self,
         state: &mut State<'_, F>,
@@ -133,12 +137,12 @@ impl Group {
         mut breaks: f64,
         gallops: bool,
     ) -> f64 {
-        let (mut seems, mut stride) = (1.0, LEAST);
+        let (mut seems, mut stride) = (1.0, self.least());
         if gallops {
             seems -= stride;
         }
         let mut gallops = gallops;
-        while seems - breaks > RESOLUTION * seems {
+        while seems - breaks > self.resolution * seems {
             stride *= 2.0;
             gallops &= 1.0 - stride > 0.5 * (breaks + seems);
             let trial = if gallops { 1.0 - stride } else { 0.5 * (breaks + seems) };

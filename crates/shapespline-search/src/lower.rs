@@ -11,15 +11,15 @@
 //! What ties ([`crate::order`]) is lowered together, so that symmetric data keep a symmetric curve whatever
 //! the direction in which points are numbered; only where that moves nothing, one after the other.
 
-use std::{collections::HashSet, ops::Range};
+use std::collections::HashSet;
 
 use shapespline_geometry::DVec3;
 
 use crate::{
     Phase, TensionFamily,
     bending::{bending, bent_by, legs_of_segments},
-    group::{Group, LEAST, RESOLUTION},
-    order::{Chords, mean_chord, sorted_groups},
+    group::{Group, RESOLUTION},
+    order::{mean_chord, sorted_groups},
     state::{AROUND, State},
     surroundings::Surroundings,
 };
@@ -34,8 +34,9 @@ const REACH: usize = 8;
 /// Nodes between tensions that moved again in one pass and are then lowered together.
 const BESIDE: usize = 3;
 
-/// Passes after which of two orders one is kept.
-const TRIED: usize = 2;
+/// How exactly the first passes find how far each tension can be lowered: as long as its neighbours are not yet
+/// where they will be, more would be wasted. Later passes take [`RESOLUTION`].
+const RESOLUTIONS: [f64; 2] = [0.15, 0.045];
 
 /// Limit of passes: the last ones move a few tensions by some per cent each.
 const PASSES: usize = 24;
@@ -83,6 +84,8 @@ fn clusters(raised: Vec<usize>, sides: usize, cycle: Option<usize>) -> Vec<Vec<u
 struct Descent {
     /// The mean chord.
     unit: f64,
+    /// That of the pass.
+    resolution: f64,
     around: Surroundings,
     /// Tensions that stay where they are because less makes the curve bend more.
     stay: HashSet<usize>,
@@ -94,119 +97,70 @@ struct Descent {
 impl Descent {
     fn new(unit: f64) -> Self {
         let around = Surroundings::default();
-        Self { unit, around, stay: HashSet::new(), tried: 0, moved: 0 }
+        Self { unit, resolution: RESOLUTION, around, stay: HashSet::new(), tried: 0, moved: 0 }
     }
 
-    /// Lowers tensions that may feel each other.
-    ///
-    /// Where several tensions hold each other up, what is left depends on which is tried first. Where chords
-    /// decide that, both orders are tried for some passes, and the one after which the curve bends less is
-    /// kept.
+    /// Lowers tensions that may feel each other: passes over those that may still be lowered, each finer than
+    /// the one before.
     fn lower_cluster<F: TensionFamily>(
         &mut self,
         state: &mut State<'_, F>,
         cluster: &[usize],
     ) -> Result<(), F::Error> {
-        let values = |state: &State<'_, F>| -> Vec<(usize, f64)> {
-            cluster.iter().map(|&k| (k, state.family.tension()[k])).collect()
-        };
-        let (polygon, unit, full) = (state.windows.polygon(), self.unit, values(state));
-        let mut chords = Chords::ShortFirst;
-        let groups = self.groups(state, cluster, chords);
-        let others = self.groups(state, cluster, Chords::LongFirst);
-        let differs = groups != others;
-        let mut open = self.descend(state, cluster, groups, chords, 0..TRIED)?;
-        if differs && !state.stopped {
-            let segments = bent_by(polygon, cluster.iter().map(|k| k / F::SIDES));
-            let bends = |state: &State<'_, F>| {
-                bending(polygon, &segments, &legs_of_segments(state.family, &segments), unit)
-            };
-            let (first, before) = (values(state), bends(state));
-            let (first_open, stay) = (open, std::mem::take(&mut self.stay));
-            state.return_to(&full)?;
-            open = self.descend(state, cluster, others, Chords::LongFirst, 0..TRIED)?;
-            if bends(state) > before * (1.0 - BENDING_SLACK) {
-                state.return_to(&first)?;
-                (open, self.stay) = (first_open, stay);
-            } else {
-                chords = Chords::LongFirst;
+        let (mut open, mut is_retry) = (cluster.to_vec(), false);
+        for pass in 0..PASSES {
+            if open.is_empty() {
+                break;
             }
-        }
-        if !open.is_empty() && !state.stopped {
-            let groups = self.groups(state, &open, chords);
-            self.descend(state, cluster, groups, chords, TRIED..PASSES)?;
+            self.resolution = RESOLUTIONS.get(pass).copied().unwrap_or(RESOLUTION);
+            let moved = self.lower_each(state, &open, pass > 0)?;
+            if state.stopped {
+                break;
+            }
+            if self.resolution <= RESOLUTION {
+                self.lower_runs(state, &moved)?;
+                let nodes: Vec<usize> = moved.iter().map(|k| k / F::SIDES).collect();
+                let cycle = state.closed().then(|| state.windows.polygon().nodes());
+                open = cluster.to_vec();
+                open.retain(|k| near(&nodes, k / F::SIDES, REACH, cycle));
+            }
+            let still = |k: &usize| state.family.tension()[*k] > 0.0;
+            open.retain(|k| still(k) && !self.stay.contains(k));
+            // Those that stayed may go after all, now that the others are where they are.
+            let retries = open.is_empty() && !(is_retry && moved.is_empty());
+            if retries {
+                open.extend(self.stay.drain().filter(still));
+                open.sort_unstable();
+            }
+            is_retry = retries;
         }
         self.stay.clear();
         Ok(())
     }
 
-    /// Tensions in the order in which they are tried, what ties together.
-    fn groups<F: TensionFamily>(
-        &mut self,
-        state: &State<'_, F>,
-        open: &[usize],
-        chords: Chords,
-    ) -> Vec<Vec<usize>> {
-        let (polygon, order) = (state.windows.polygon(), (chords, self.unit));
-        sorted_groups(open, polygon, &*state.family, order, &mut self.around)
-    }
-
-    /// Passes over the tensions that may still be lowered, the first one in a known order. Returns those that
-    /// may be lowered still.
-    fn descend<F: TensionFamily>(
+    /// One pass over some tensions. Returns those that moved, ascending.
+    fn lower_each<F: TensionFamily>(
         &mut self,
         state: &mut State<'_, F>,
-        cluster: &[usize],
-        mut groups: Vec<Vec<usize>>,
-        chords: Chords,
-        passes: Range<usize>,
+        open: &[usize],
+        again: bool,
     ) -> Result<Vec<usize>, F::Error> {
-        let (nodes, closed) = (state.windows.polygon().nodes(), state.closed());
-        let still = |state: &State<'_, F>, k: usize| state.family.tension()[k] > 0.0;
-        let (mut open, mut are_stayed) = (Vec::new(), false);
-        for pass in passes {
-            let mut moved = Vec::new();
-            for tied in &groups {
-                self.lower_tied(state, tied, pass > 0, &mut moved)?;
-                self.tried += 1;
-                if self.tried.is_multiple_of(BETWEEN_CALLS) {
-                    state.wants_to_stop(Phase::Lower, moved.len());
-                }
-                if state.stopped {
-                    return Ok(open);
-                }
+        let (polygon, around) = (state.windows.polygon(), &mut self.around);
+        let groups = sorted_groups(open, polygon, &*state.family, self.unit, around);
+        let mut moved = Vec::new();
+        for tied in &groups {
+            self.lower_tied(state, tied, again, &mut moved)?;
+            self.tried += 1;
+            if self.tried.is_multiple_of(BETWEEN_CALLS) {
+                state.wants_to_stop(Phase::Lower, moved.len());
             }
-            self.moved += moved.len();
-            if moved.is_empty() && are_stayed {
-                return Ok(Vec::new());
-            }
-            are_stayed = moved.is_empty();
-            open = if are_stayed {
-                // Those that stayed may go after all, now that the others are where they are.
-                let mut stayed: Vec<usize> = self.stay.drain().collect();
-                stayed.retain(|&k| still(state, k));
-                stayed.sort_unstable();
-                stayed
-            } else {
-                moved.sort_unstable();
-                if pass > 1 {
-                    self.lower_runs(state, &moved)?;
-                }
-                moved.iter_mut().for_each(|k| *k /= F::SIDES);
-                let cycle = closed.then_some(nodes);
-                let is_open = |k: &usize| {
-                    still(state, *k)
-                        && !self.stay.contains(k)
-                        && near(&moved, k / F::SIDES, REACH, cycle)
-                };
-                cluster.iter().copied().filter(is_open).collect()
-            };
-            if open.is_empty() {
+            if state.stopped {
                 break;
             }
-            groups = self.groups(state, &open, chords);
         }
-        Ok(open)
+        self.moved += moved.len();
+        moved.sort_unstable();
+        Ok(moved)
     }
 
     /// Lowers tensions that moved again, neighbours together: where each lets the others go a little further,
@@ -256,8 +210,8 @@ impl Descent {
         indices: &[usize],
         again: bool,
     ) -> Result<bool, F::Error> {
-        let mut group = Group::of(indices, state.family.tension());
-        if again && state.seems_to_break(group.at(1.0 - LEAST), AROUND) == Some(true) {
+        let mut group = Group::of(indices, state.family.tension(), self.resolution);
+        if again && state.seems_to_break(group.at(1.0 - group.least()), AROUND) == Some(true) {
             return Ok(false);
         }
         let nodes = indices.iter().map(|k| k / F::SIDES);
@@ -272,7 +226,7 @@ impl Descent {
         indices.iter().for_each(|k| {
             self.stay.remove(k);
         });
-        Ok(factor < 1.0 - RESOLUTION)
+        Ok(factor < 1.0 - self.resolution)
     }
 
     /// Whether segments bend more than they did with other legs.

@@ -17,19 +17,11 @@ const BUCKET: f64 = 1e-6;
 /// Curvatures below this part of the reciprocal mean chord count as zero.
 const STRAIGHT: f64 = 1e-6;
 
-/// Which of two tensions that are alike else is tried first, by the chords beside them.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Chords {
-    /// The one beside the shorter chord.
-    ShortFirst,
-    /// The one beside the longer chord.
-    LongFirst,
-}
-
 /// What a tension is sorted by, in this order; what is around it decides the rest.
 #[derive(Clone, Copy)]
 struct Key {
-    /// Curvature, tension, and the chords on its own side and the other.
+    /// Curvature, tension, and the chords on its own side and the other: where several tensions hold each other
+    /// up, the curve mostly bends less if those beside long chords go first.
     numbers: [f64; 4],
     node: usize,
     /// The side that counts first: 0 before the node, 1 after it.
@@ -43,17 +35,17 @@ fn bucket(x: f64) -> f64 {
     (x.ln() / BUCKET).round() + 0.0
 }
 
-/// Tensions that tie, by index: those at the sharpest ends of segments first, then the heaviest, then by
-/// the chords beside them, then by what is around. `unit`: [`mean_chord`].
+/// Tensions that tie, by index: those at the sharpest ends of segments first, then the heaviest, then
+/// those beside the longest chords, then by what is around. `unit`: [`mean_chord`].
 pub(crate) fn sorted_groups<F: TensionFamily>(
     open: &[usize],
     polygon: &DataPolygon,
     family: &F,
-    (chords, unit): (Chords, f64),
+    unit: f64,
     around: &mut Surroundings,
 ) -> Vec<Vec<usize>> {
     let mut keys: Vec<Key> =
-        open.iter().map(|&k| Key::new(k, polygon, family, (chords, unit), around)).collect();
+        open.iter().map(|&k| Key::new(k, polygon, family, unit, around)).collect();
     let mut compare = |a: &Key, b: &Key| {
         let numbers = compare(&a.numbers, &b.numbers);
         numbers.then_with(|| around.compare(polygon, [a.node, a.side], [b.node, b.side]))
@@ -75,7 +67,7 @@ impl Key {
         tension: usize,
         polygon: &DataPolygon,
         family: &F,
-        (chords, unit): (Chords, f64),
+        unit: f64,
         around: &mut Surroundings,
     ) -> Self {
         let node = tension / F::SIDES;
@@ -90,10 +82,9 @@ impl Key {
         let sharp = if either { sharp(0).max(sharp(1)) } else { sharp(side) };
         // Of what is straight rounding has the say.
         let sharp = if sharp > STRAIGHT { sharp } else { 0.0 };
-        let sign = if chords == Chords::LongFirst { 1.0 } else { -1.0 };
         let [own, other] = [side, 1 - side].map(|side| {
             let chord = beside(polygon, node, side).map_or(DVec3::ZERO, |i| polygon.chord(i));
-            sign * bucket(length(chord) / unit) + 0.0
+            bucket(length(chord) / unit)
         });
         let numbers = [bucket(sharp), bucket(family.tension()[tension]), own, other];
         Self { numbers, node, side, tension }
