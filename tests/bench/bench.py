@@ -113,16 +113,21 @@ def families(sizes: list[int], queries: int) -> Iterator[Line]:
         tension = np.random.default_rng(0).uniform(0, 3, count)
         scale = 1 / (1 + tension)
         u = ss.NuSpline(points).parameters
-        nu, tense, preserve, scipy = best(
+        directions = ("parametrization", "balanced")
+        nu, tense, *preserve, scipy = best(
             lambda p=points, t=tension: ss.NuSpline(p, tension=t),
             lambda p=points, s=scale: ss.TensionSpline(p, tangent_scale=s),
-            lambda p=points: ss.CatmullRom.shape_preserving(p),
+            *(
+                lambda p=points, d=d: ss.CatmullRom.shape_preserving(p, directions=d)
+                for d in directions
+            ),
             lambda p=points, u=u: make_interp_spline(u, p, k=3),
         )
         yield at_most(f"TensionSpline beside NuSpline, N = {count:g}", tense, nu, 2.0)
-        what = f"CatmullRom.shape_preserving, N = {count:g}"
-        yield faster(what, preserve, scipy, 5.0)
-        yield within(f"{what}, a point", preserve / count, 60e-9)
+        for which, time_taken in zip(directions, preserve, strict=True):
+            what = f"CatmullRom.shape_preserving, directions {which}, N = {count:g}"
+            yield faster(what, time_taken, scipy, 5.0)
+            yield within(f"{what}, per point", time_taken / count, 60e-9)
 
     curve = ss.TensionSpline(points, tangent_scale=scale)
     linear, pieces = ss.NuSpline(points, tension=tension), curve.to_ppoly()
