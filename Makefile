@@ -35,7 +35,7 @@ PYTEST ?=
 # Arguments for the benchmark, for example: make bench BENCH=--quick
 BENCH ?=
 # The published crates, in the order of crates/README.md: each after those that it depends on.
-CRATES := $(addprefix shapespline-,geometry banded criteria search nu tension catmull-rom fair monotone) shapespline
+CRATES := $(addprefix shapespline-,polynomial geometry banded criteria search nu tension catmull-rom fair monotone) shapespline
 # Seconds for each fuzz target.
 FUZZ ?= 60
 

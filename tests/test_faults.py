@@ -102,7 +102,9 @@ def work(n):
         curve = fit(points)
         u = np.random.default_rng(1).uniform(*curve.parameters[[0, -1]], 4 * n)
         curve(u), curve.curvature(u), curve.arc_length(), curve.sample(n, by="arc-length")
-        assert curve.check().ok
+        report = curve.check()
+        assert report.ok
+        report.segments, report.nodes
     curve.fairness()
     if n == 4000:
         # Much of it fails at first: more ranges than are checked one by one.

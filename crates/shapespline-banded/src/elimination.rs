@@ -10,7 +10,7 @@
 //! any number of threads.
 
 use glam::DVec3;
-use rayon::prelude::*;
+use shapespline_polynomial::parallel;
 
 use crate::{Row, Rows, SolveError, error::checked_pivot};
 
@@ -58,14 +58,13 @@ pub(crate) fn eliminate_all<R: Rows + Sync>(
     if n < 2 * PART {
         return run(0, nothing, ratio, reduced);
     }
-    let part = |(k, (ratio, reduced)): (usize, (&mut [f64], &mut [DVec3]))| {
-        let start = k * PART;
+    let part = |(): &mut (), start: usize, (ratio, reduced): (&mut [f64], &mut [DVec3])| {
         let early = (start.saturating_sub(EARLY)..start)
             .try_fold(nothing, |before, i| eliminate(i, rows.row(i), before))?;
         run(start, early, ratio, reduced).map(|()| early)
     };
-    let parts = ratio.par_chunks_mut(PART).zip(reduced.par_chunks_mut(PART)).enumerate();
-    let begun: Result<Vec<Eliminated>, SolveError> = parts.map(part).collect();
+    let begun: Result<Vec<Eliminated>, SolveError> =
+        parallel::parts((&mut *ratio, &mut *reduced), PART, 2 * PART, || (), part);
     let Ok(begun) = begun else {
         // Which row is to blame, a run from end to end says.
         return run(0, nothing, ratio, reduced);
@@ -107,8 +106,10 @@ pub(crate) fn substitute_all(ratio: &[f64], x: &mut [DVec3]) -> bool {
         rows.rev().fold(DVec3::ZERO, |after, i| x[i] - after * ratio[i])
     };
     let begun: Vec<DVec3> = (0..n.div_ceil(PART)).map(late).collect();
-    let parts = x.par_chunks_mut(PART).zip(ratio.par_chunks(PART)).zip(&begun);
-    parts.for_each(|((x, ratio), &after)| substitute(ratio, x, after));
+    let part = |(): &mut (), start: usize, (x, ratio): (&mut [DVec3], &[f64])| {
+        substitute(ratio, x, begun[start / PART]);
+    };
+    parallel::parts::<_, _, _, ()>((&mut *x, ratio), PART, 2 * PART, || (), part);
     let ends = x.iter().skip(PART).step_by(PART);
     begun.iter().zip(ends).all(|(begun, end)| begun == end)
 }

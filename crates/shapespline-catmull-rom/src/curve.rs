@@ -4,9 +4,9 @@
 
 use std::ops::ControlFlow;
 
-use rayon::prelude::*;
 use shapespline_criteria::{Criteria, ShapeReport, Tolerances};
 use shapespline_geometry::{Boundary, DVec3, DataPolygon, InputError, PiecewiseCubic};
+use shapespline_polynomial::parallel;
 use shapespline_search::{
     Fit, FitError, Interpolant, Outcome, SearchOptions, Step, Tension, repeat_first_if_closed,
     search_and_report,
@@ -217,7 +217,7 @@ const MANY: usize = 65_536;
 
 /// The tension at each node, of the factor that is left of its handles; and how many were shortened.
 fn tensions(mut factors: Vec<f64>) -> (Vec<f64>, usize) {
-    let turn = |factors: &mut [f64]| {
+    let turn = |(): &mut (), _, factors: &mut [f64]| {
         let mut shortened = 0;
         for factor in factors {
             *factor = 1.0 - *factor;
@@ -225,12 +225,8 @@ fn tensions(mut factors: Vec<f64>) -> (Vec<f64>, usize) {
         }
         shortened
     };
-    let shortened = if factors.len() < MANY {
-        turn(&mut factors)
-    } else {
-        factors.par_chunks_mut(MANY / 8).map(turn).sum()
-    };
-    (factors, shortened)
+    let shortened: Vec<usize> = parallel::parts(&mut *factors, MANY / 8, MANY, || (), turn);
+    (factors, shortened.into_iter().sum())
 }
 
 impl Interpolant for CatmullRom {

@@ -4,8 +4,8 @@
 
 use std::{convert::Infallible, ops::Range};
 
-use rayon::prelude::*;
 use shapespline_geometry::{DVec3, DataPolygon};
+use shapespline_polynomial::parallel;
 use shapespline_search::{TensionFamily, tension_unit};
 
 use crate::tangents::tangent;
@@ -22,23 +22,15 @@ pub(crate) struct Handles<'a> {
     tension: Vec<f64>,
 }
 
-/// From this number of nodes on they are worked on by all threads, in blocks of this many.
-const BLOCK: usize = 4096;
-
-/// `make(0), …, make(count − 1)`.
-fn each<T: Send>(count: usize, make: impl Fn(usize) -> T + Sync + Send) -> Vec<T> {
-    if count < 2 * BLOCK {
-        (0..count).map(make).collect()
-    } else {
-        (0..count).into_par_iter().with_min_len(BLOCK).map(make).collect()
-    }
-}
+/// From this number of nodes on they are worked on by all threads.
+const MANY: usize = 8192;
 
 /// The full legs of every segment: a third of the spacing along the tangents at its nodes. A leg at an
 /// end of zero curvature is zero here.
 fn full_legs(polygon: &DataPolygon) -> Vec<[DVec3; 2]> {
-    let tangents = each(polygon.points().len(), |node| tangent(polygon, node).unwrap_or_default());
-    each(polygon.segments(), |i| {
+    let of = |node: usize| tangent(polygon, node).unwrap_or_default();
+    let tangents: Vec<DVec3> = parallel::map(polygon.points().len(), MANY, of);
+    parallel::map(polygon.segments(), MANY, |i| {
         let third = polygon.spacing(i) / 3.0;
         [tangents[i] * third, tangents[i + 1] * third]
     })
@@ -49,15 +41,10 @@ fn scaled(
     mut legs: Vec<[DVec3; 2]>,
     factors: impl Fn(usize) -> [f64; 2] + Sync + Send,
 ) -> Vec<[DVec3; 2]> {
-    let scale = |(i, [a, c]): (usize, &mut [DVec3; 2])| {
+    parallel::fill(&mut legs, MANY, |i, [a, c]| {
         let [p, q] = factors(i);
         (*a, *c) = (*a * p, *c * q);
-    };
-    if legs.len() < 2 * BLOCK {
-        legs.iter_mut().enumerate().for_each(scale);
-    } else {
-        legs.par_iter_mut().with_min_len(BLOCK).enumerate().for_each(scale);
-    }
+    });
     legs
 }
 

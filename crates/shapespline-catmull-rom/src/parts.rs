@@ -3,10 +3,10 @@
 //! The largest handles with their check, batch by batch, so that what a batch needs stays in the
 //! cache. Everything is local: batches know nothing of each other.
 
-use rayon::prelude::*;
 use shapespline_banded::SolveError;
 use shapespline_criteria::{BatchChecker, Requirements};
 use shapespline_geometry::{DVec3, DataPolygon, SegmentBatch};
+use shapespline_polynomial::parallel;
 
 use crate::{
     Directions, HandleOptions, balanced,
@@ -62,18 +62,12 @@ pub(crate) fn limited(
         }
         (found, last)
     };
-    let (found, last) = if n < PARTS * PART {
-        let handles = &mut BatchHandles::default();
-        work(handles, 0, (&mut legs, &mut factors[..n]))
-    } else {
-        let parts = legs.par_chunks_mut(PART).zip(factors[..n].par_chunks_mut(PART)).enumerate();
-        let parts: Vec<(HandleScan, f64)> = parts
-            .map_init(BatchHandles::default, |handles, (k, out)| work(handles, k * PART, out))
-            .collect();
-        parts
-            .into_iter()
-            .fold((HandleScan::default(), 1.0), |(found, _), (part, last)| (found.and(part), last))
-    };
+    let all = (&mut *legs, &mut factors[..n]);
+    let parts: Vec<(HandleScan, f64)> =
+        parallel::parts(all, PART, PARTS * PART, BatchHandles::default, work);
+    let (found, last) = parts
+        .into_iter()
+        .fold((HandleScan::default(), 1.0), |(found, _), (part, last)| (found.and(part), last));
     // An open curve has one more node, its end.
     factors[n..].fill(last);
     Ok(Checked { legs, factors, found })

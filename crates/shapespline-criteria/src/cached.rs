@@ -4,8 +4,8 @@
 
 use std::{cell::Cell, ops::Range};
 
-use rayon::prelude::*;
 use shapespline_geometry::{DVec3, DataPolygon, SegmentBatch, VectorLanes};
+use shapespline_polynomial::parallel;
 
 use crate::{BatchChecker, BatchRequirements, Criterion, Requirements, Violations, rounding::Lean};
 
@@ -126,11 +126,9 @@ impl<'a> CachedChecker<'a> {
             find(windows, k * BLOCK..n.min((k + 1) * BLOCK), &mut found);
             found
         };
-        let blocks = (0..n.div_ceil(BLOCK)).into_par_iter();
-        blocks.map_init(|| self.another(), block).reduce(T::default, |mut all, found| {
-            join(&mut all, found);
-            all
-        })
+        let blocks: Vec<T> = parallel::map_with(n.div_ceil(BLOCK), 0, || self.another(), block);
+        blocks.into_iter().for_each(|found| join(&mut all, found));
+        all
     }
 
     /// Adds those of some segments that are not proved to keep the shape with the end legs that `legs` says,

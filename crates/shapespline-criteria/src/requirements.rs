@@ -6,8 +6,8 @@
 use std::ops::Range;
 
 use glam::DVec3;
-use rayon::prelude::*;
 use shapespline_geometry::{DataPolygon, Dimension, SegmentBatch, length, normalize};
+use shapespline_polynomial::parallel;
 
 use crate::{Criteria, Criterion, Tolerances, resolution::leave_known};
 
@@ -189,8 +189,7 @@ impl Requirements {
 
     /// What each segment of a polygon requires among the [wanted](Self::wanted) requirements.
     pub(crate) fn among(polygon: &DataPolygon, tolerances: &Tolerances, wanted: Self) -> Vec<Self> {
-        let of = |batch: &mut SegmentBatch, (k, required): (usize, &mut [Self])| {
-            let start = k * SegmentBatch::OWN;
+        let of = |batch: &mut SegmentBatch, start: usize, required: &mut [Self]| {
             batch.load(polygon, start..start + required.len());
             let mut all = [Self::default(); SegmentBatch::ROOM];
             Self::of_batch(polygon, batch, wanted, tolerances, &mut all);
@@ -198,16 +197,8 @@ impl Requirements {
         };
         let n = polygon.segments();
         let mut required = vec![Self::default(); n];
-        if n < 2 * BLOCK {
-            let mut batch = SegmentBatch::default();
-            required.chunks_mut(SegmentBatch::OWN).enumerate().for_each(|own| of(&mut batch, own));
-        } else {
-            required
-                .par_chunks_mut(SegmentBatch::OWN)
-                .enumerate()
-                .with_min_len(BLOCK / SegmentBatch::OWN)
-                .for_each_init(SegmentBatch::default, of);
-        }
+        let (own, batch) = (SegmentBatch::OWN, SegmentBatch::default);
+        parallel::parts::<_, _, _, ()>(&mut *required, own, 2 * BLOCK, batch, of);
         required
     }
 
@@ -309,13 +300,11 @@ fn all_batches(
     test: impl Fn(&mut SegmentBatch, Range<usize>) -> bool + Sync + Send,
 ) -> bool {
     let own = |k: usize| k * SegmentBatch::OWN..((k + 1) * SegmentBatch::OWN).min(count);
-    let batches = 0..count.div_ceil(SegmentBatch::OWN);
-    if count < 2 * BLOCK {
-        let mut batch = SegmentBatch::default();
-        return batches.into_iter().all(|k| test(&mut batch, own(k)));
-    }
-    let batches = batches.into_par_iter().with_min_len(BLOCK / SegmentBatch::OWN);
-    batches.map_init(SegmentBatch::default, |batch, k| test(batch, own(k))).all(|passes| passes)
+    let batches = count.div_ceil(SegmentBatch::OWN);
+    // An option ends with the first batch that fails.
+    let test = |batch: &mut SegmentBatch, k: usize| test(batch, own(k)).then_some(());
+    let many = 2 * BLOCK / SegmentBatch::OWN;
+    parallel::map_with::<_, _, Option<()>>(batches, many, SegmentBatch::default, test).is_some()
 }
 
 /// What `Γ`, `P_m·P_{m+1}` and the sines of the turns require. Without branches: most segments ask for

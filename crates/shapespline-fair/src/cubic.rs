@@ -5,9 +5,9 @@
 use std::ops::Range;
 
 use glam::DVec3;
-use rayon::prelude::*;
 use shapespline_banded::{Row, Rows, SolveError, solve_once};
 use shapespline_geometry::DataPolygon;
+use shapespline_polynomial::parallel;
 
 use crate::{element::Node, segment::Units};
 
@@ -103,11 +103,7 @@ impl<'a> Plain<'a> {
 
     /// Those of all segments.
     pub(crate) fn all_legs(&self) -> Vec<[DVec3; 2]> {
-        let n = self.polygon.segments();
-        if n < 2 * BLOCK {
-            return (0..n).map(|i| self.legs(i)).collect();
-        }
-        (0..n).into_par_iter().with_min_len(BLOCK).map(|i| self.legs(i)).collect()
+        parallel::map(self.polygon.segments(), 2 * BLOCK, |i| self.legs(i))
     }
 
     /// First and second derivative at a node, in units of the polygon.
@@ -142,12 +138,8 @@ const BLOCK: usize = 4096;
 
 /// `term(0) + … + term(count − 1)`.
 pub(crate) fn sum(count: usize, term: impl Fn(usize) -> f64 + Sync) -> f64 {
-    let block = |k: usize| (k * BLOCK..count.min((k + 1) * BLOCK)).map(&term).sum::<f64>();
-    let blocks = 0..count.div_ceil(BLOCK);
-    if count < 2 * BLOCK {
-        return blocks.map(block).sum();
-    }
-    blocks.into_par_iter().map(block).collect::<Vec<f64>>().into_iter().sum()
+    let sums: Vec<f64> = parallel::blocks(count, BLOCK, |block| block.map(&term).sum::<f64>());
+    sums.into_iter().sum()
 }
 
 #[cfg(test)]

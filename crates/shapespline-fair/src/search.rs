@@ -2,7 +2,7 @@
 
 //! Windows around failing segments, each solved by itself; on all threads, where there are many segments.
 
-use rayon::prelude::*;
+use shapespline_polynomial::parallel;
 
 use crate::{
     Method,
@@ -76,11 +76,11 @@ impl LadderResult<'_> {
             return all.iter().map(|window| of(window, control)).collect();
         }
         let shared = &*control;
-        let beside = |window: &Window| {
+        let beside = |k: usize| {
             let mut own = shared.beside();
-            (of(window, &mut own), own)
+            (of(&all[k], &mut own), own)
         };
-        let found: Vec<_> = all.par_iter().map(beside).collect();
+        let found: Vec<_> = parallel::map(all.len(), 0, beside);
         let join = |(answer, own)| {
             control.add(own);
             answer

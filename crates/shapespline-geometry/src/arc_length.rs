@@ -4,7 +4,7 @@
 
 use std::ops::ControlFlow;
 
-use rayon::prelude::*;
+use shapespline_polynomial::parallel;
 
 use crate::{
     CubicSegment, Curve, DVec3, PiecewiseCubic, Side,
@@ -23,8 +23,7 @@ const GAUSS: [(f64, f64); 5] = [
 /// Error allowed in the length of a segment, relative to the length of its Bézier polygon.
 const ACCURACY: f64 = 1e-13;
 
-/// Segments from on which they are measured on all threads. Not fewer, and none of rayon's iterators below:
-/// Python calls small work where it stands, and after a fork the threads of rayon's own pool are gone.
+/// Segments from on which they are measured on all threads.
 const MANY: usize = 8192;
 
 impl CubicSegment {
@@ -150,15 +149,12 @@ impl<'a, C: Curve + ?Sized> ArcLength<'a, C> {
     pub fn new_with(curve: &'a C, go_on: &(dyn Fn() -> ControlFlow<()> + Sync)) -> Option<Self> {
         let cubic = curve.cubic();
         let n = cubic.segments();
-        let measure =
-            |i: usize| go_on().is_continue().then(|| cubic.segment(i).arc_length(0.0, 1.0));
-        // With room for the zero before the first; then the running sums take the lengths' places.
-        let mut upto: Vec<f64> = if n < MANY {
-            std::iter::once(Some(0.0)).chain((0..n).map(measure)).collect::<Option<_>>()?
-        } else {
-            let lengths = (0..n).into_par_iter().with_min_len(MANY / 8).map(measure);
-            rayon::iter::once(Some(0.0)).chain(lengths).collect::<Option<_>>()?
+        // The zero comes before the first; then the running sums take the lengths' places.
+        let measure = |i: usize| match i.checked_sub(1) {
+            None => Some(0.0),
+            Some(i) => go_on().is_continue().then(|| cubic.segment(i).arc_length(0.0, 1.0)),
         };
+        let mut upto: Vec<f64> = parallel::map::<_, Option<_>>(n + 1, MANY + 1, measure)?;
         let mut sum = 0.0;
         for length in &mut upto {
             sum += *length;

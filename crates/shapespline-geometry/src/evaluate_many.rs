@@ -5,15 +5,15 @@
 use std::array;
 
 use glam::DVec3;
-use rayon::prelude::*;
+use shapespline_polynomial::parallel;
 
 use crate::{Dimension, Domain, InputError, PiecewiseCubic, Side, locate::search};
 
 /// Parameters whose segments are found before any of them is evaluated.
 const TILE: usize = 64;
 
-/// Tiles that one thread works through at least.
-const TILES: usize = 256;
+/// Parameters that one thread works through, at least.
+const PART: usize = 256 * TILE;
 
 /// Parameters a segment from which the runs of each segment are evaluated together.
 const RUN: usize = 8;
@@ -126,13 +126,10 @@ fn rows<E: Evaluate + ?Sized, const ORDER: usize, const COLUMNS: usize>(
             *out = row(segment, local);
         }
     };
-    if u.len() <= 2 * TILE * TILES {
-        let mut hint = 0;
-        u.chunks(TILE).zip(out.chunks_mut(TILE)).for_each(|both| tile(&mut hint, both));
-    } else {
-        let both = u.par_chunks(TILE).zip(out.par_chunks_mut(TILE));
-        both.with_min_len(TILES).for_each_init(|| 0, tile);
-    }
+    let part = |hint: &mut usize, _, (u, out): (&[f64], &mut [[f64; COLUMNS]])| {
+        u.chunks(TILE).zip(out.chunks_mut(TILE)).for_each(|both| tile(hint, both));
+    };
+    parallel::parts::<_, _, _, ()>((u, out), PART, 2 * PART + 1, || 0, part);
 }
 
 impl PiecewiseCubic {

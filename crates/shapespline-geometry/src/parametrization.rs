@@ -3,7 +3,7 @@
 //! How parameters are chosen from points.
 
 use glam::DVec3;
-use rayon::prelude::*;
+use shapespline_polynomial::parallel;
 
 use crate::{
     Coordinates, Dimension, InputError,
@@ -85,9 +85,8 @@ pub(crate) fn check_increasing(argument: &'static str, u: &[f64]) -> Result<(), 
 /// The least spacing: evaluation multiplies by its reciprocal, which must be finite.
 const LEAST: f64 = 5.6e-309;
 
-/// Chords from which on their lengths are taken on all threads, in blocks.
+/// Chords from which on their lengths are taken on all threads.
 const MANY: usize = 32_768;
-const BLOCK: usize = MANY / 4;
 
 fn accumulate(
     points: &[DVec3],
@@ -108,13 +107,9 @@ fn accumulate(
     };
     let mut u = vec![0.0; points.len()];
     let Some((_, rest)) = u.split_first_mut() else { return Ok(u) };
-    if rest.len() < MANY {
-        steps(points, rest);
-    } else {
-        let block =
-            |(k, u): (usize, &mut [f64])| steps(&points[k * BLOCK..=k * BLOCK + u.len()], u);
-        rest.par_chunks_mut(BLOCK).enumerate().for_each(block);
-    }
+    let part =
+        |(): &mut (), start: usize, u: &mut [f64]| steps(&points[start..=start + u.len()], u);
+    parallel::parts::<_, _, _, ()>(rest, MANY / 4, MANY, || (), part);
     let mut sum = 0.0;
     for i in 1..u.len() {
         let next = sum + u[i];

@@ -6,7 +6,7 @@ mod evaluate;
 
 use glam::DVec3;
 use once_cell::race::OnceBox;
-use rayon::prelude::*;
+use shapespline_polynomial::parallel;
 
 use crate::{
     CubicSegment, DataPolygon, Dimension, InputError, Locator, Side, error::check_room,
@@ -231,7 +231,9 @@ const MANY: usize = 32_768;
 
 fn check_legs(legs: &[[DVec3; 2]]) -> Result<(), InputError> {
     let check = |legs: &[[DVec3; 2]]| check_room("legs", legs.as_flattened());
-    if legs.len() < MANY { check(legs) } else { legs.par_chunks(MANY / 4).map(check).collect() }
+    let part = |(): &mut (), _, legs: &[[DVec3; 2]]| check(legs);
+    parallel::parts::<_, _, _, Result<(), _>>(legs, MANY / 4, MANY, || (), part)
+        // Which leg is to blame, a check of all says.
         .or_else(|_| check(legs))
         // Two legs a segment: the index is the segment's.
         .map_err(|error| match error {

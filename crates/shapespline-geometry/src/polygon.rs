@@ -6,7 +6,7 @@ use std::ops::Range;
 
 use glam::DVec3;
 use once_cell::race::OnceBox;
-use rayon::prelude::*;
+use shapespline_polynomial::parallel;
 
 use crate::{
     Boundary, Coordinates, InputError, Parametrization,
@@ -228,11 +228,7 @@ impl DataPolygon {
             let n = self.segments();
             // The first and the last place are filled in below.
             let direction = |i: usize| normalize(self.chord(i.clamp(1, n) - 1));
-            let mut all: Vec<DVec3> = if n < 2 * BLOCK {
-                (0..n + 2).map(direction).collect()
-            } else {
-                (0..n + 2).into_par_iter().with_min_len(BLOCK).map(direction).collect()
-            };
+            let mut all: Vec<DVec3> = parallel::map(n + 2, 2 * BLOCK + 2, direction);
             (all[0], all[n + 1]) = if self.is_closed() {
                 (all[n], all[1])
             } else {
@@ -388,21 +384,8 @@ fn check_chords(points: &[DVec3], dimension: Dimension) -> Result<f64, InputErro
         (Err(a), Err(b)) => Err(a.min(b)),
         (Err(i), _) | (_, Err(i)) => Err(i),
     };
-    in_blocks(points.len() - 1, largest, both).map_err(|i| bad_chord(points, dimension, i))
-}
-
-/// `work` on `0..count`: from two blocks on on all threads, their results joined.
-fn in_blocks<T: Send>(
-    count: usize,
-    work: impl Fn(Range<usize>) -> T + Sync,
-    join: impl Fn(T, T) -> T + Sync + Send,
-) -> T {
-    if count < 2 * BLOCK {
-        return work(0..count);
-    }
-    let block = |k: usize| work(k * BLOCK..((k + 1) * BLOCK).min(count));
-    let blocks = (0..count.div_ceil(BLOCK)).into_par_iter();
-    blocks.map(block).reduce_with(join).unwrap_or_else(|| work(0..count))
+    parallel::fold(points.len() - 1, BLOCK, largest, both)
+        .map_err(|i| bad_chord(points, dimension, i))
 }
 
 /// What is wrong with chord `i`, the first that is not a positive number.
@@ -426,7 +409,7 @@ fn check_velocities(points: &[DVec3], parameters: &[f64], longest: f64) -> Resul
     // Far from overflow all is well; a speed is taken only where that is in question.
     let short = |u: &[f64]| u64::from(!(u[1] - u[0] > longest * 1e-300));
     let count = |i: Range<usize>| parameters[i.start..=i.end].windows(2).map(short).sum::<u64>();
-    if in_blocks(points.len() - 1, count, |a, b| a + b) == 0 {
+    if parallel::fold(points.len() - 1, BLOCK, count, |a, b| a + b) == 0 {
         return Ok(());
     }
     for (i, (p, u)) in points.windows(2).zip(parameters.windows(2)).enumerate() {

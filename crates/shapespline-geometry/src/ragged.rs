@@ -4,12 +4,9 @@
 
 use std::ops::Range;
 
-use rayon::prelude::*;
+use shapespline_polynomial::parallel;
 
 use crate::InputError;
-
-/// Rows that a thread takes at once.
-const FEW: usize = 4;
 
 /// Most threads that are made where a caller asks for more than the machine has processors.
 const MAX_THREADS: usize = 256;
@@ -83,9 +80,7 @@ impl<'a, T: Sync> Ragged<'a, T> {
         threads: Option<usize>,
         work: impl Fn(usize, &'a [T]) -> R + Sync,
     ) -> Result<Vec<R>, InputError> {
-        // Rows differ in length and in work: small parts, so that no thread is left with much at the end.
-        let parts = || (0..self.len()).into_par_iter().with_max_len(FEW);
-        let run = || parts().map(|k| work(k, self.row(k))).collect();
+        let run = || parallel::map_uneven(self.len(), |k| work(k, self.row(k)));
         let Some(count) = threads else { return Ok(run()) };
         if count == 0 {
             let (argument, value) = ("threads", 0.0);
@@ -93,10 +88,7 @@ impl<'a, T: Sync> Ragged<'a, T> {
         }
         let processors = std::thread::available_parallelism().map_or(1, usize::from);
         let count = count.min(self.len().max(1)).min(processors.max(MAX_THREADS));
-        match rayon::ThreadPoolBuilder::new().num_threads(count).build() {
-            Ok(pool) => Ok(pool.install(run)),
-            Err(_) => Ok(run()),
-        }
+        Ok(parallel::on(count, run))
     }
 }
 

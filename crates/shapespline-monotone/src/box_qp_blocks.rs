@@ -13,8 +13,8 @@ use crate::data::Data;
 use crate::energy::Fairness;
 use crate::interrupt::{GoOn, check_interrupt};
 use crate::program::Program;
-use rayon::prelude::*;
 use shapespline_banded::box_qp::BoxQpSolution;
+use shapespline_polynomial::parallel;
 use std::ops::Range;
 
 /// Nodes that a stretch answers for: with its arrays it fits into a core's cache.
@@ -81,12 +81,8 @@ fn solve_by(
         solution.x.drain(..first);
         Ok(Stretch { nodes, solution, beyond, room })
     };
-    let stretches: Vec<Result<Stretch, MonotoneError>> = if count < SHARED {
-        let mut program = Program::default();
-        (0..count).map(|k| stretch(&mut program, k)).collect()
-    } else {
-        (0..count).into_par_iter().map_init(Program::default, stretch).collect()
-    };
+    let stretches: Vec<Result<Stretch, MonotoneError>> =
+        parallel::map_with(count, SHARED, Program::default, stretch);
     let stretches = stretches.into_iter().collect::<Result<Vec<_>, _>>()?;
     let joined = stretches.windows(2).all(|w| {
         let (a, b) = (&w[0], &w[1]);

@@ -2,7 +2,7 @@
 
 //! Many queries: cut into tiles, which all threads work through.
 
-use rayon::prelude::*;
+use shapespline_polynomial::parallel;
 
 /// Queries whose segments are found before any of them is answered: what the loops load depends on no branch of the
 /// iteration before, so that cache misses overlap.
@@ -16,11 +16,9 @@ pub(crate) fn answers(
     tile: impl Fn(&[f64]) -> [f64; TILE] + Sync,
 ) -> Vec<f64> {
     // Collected, not written to what was zeroed before: clearing fresh memory is a good part of the time.
-    let tiles: Vec<[f64; TILE]> = if queries.len() <= 2 * TILE * least {
-        queries.chunks(TILE).map(tile).collect()
-    } else {
-        queries.par_chunks(TILE).with_min_len(least).map(&tile).collect()
-    };
+    let one = |k: usize| tile(&queries[k * TILE..queries.len().min((k + 1) * TILE)]);
+    let count = queries.len().div_ceil(TILE);
+    let tiles: Vec<[f64; TILE]> = parallel::map(count, 2 * least + 1, one);
     let mut answers = tiles.into_flattened();
     answers.truncate(queries.len());
     answers
@@ -35,11 +33,9 @@ pub(crate) fn fill(
     work: impl Fn(&[f64], &mut [f64]) + Sync,
 ) {
     let n = queries.len().min(out.len());
-    let (queries, out) = (&queries[..n], &mut out[..n]);
-    if n <= 2 * TILE * least {
+    let part = |(): &mut (), _, (queries, out): (&[f64], &mut [f64])| {
         queries.chunks(TILE).zip(out.chunks_mut(TILE)).for_each(|(q, out)| work(q, out));
-    } else {
-        let tiles = queries.par_chunks(TILE).zip(out.par_chunks_mut(TILE));
-        tiles.with_min_len(least).for_each(|(q, out)| work(q, out));
-    }
+    };
+    let size = TILE * least;
+    parallel::parts::<_, _, _, ()>((&queries[..n], &mut out[..n]), size, 2 * size + 1, || (), part);
 }

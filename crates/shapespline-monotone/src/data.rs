@@ -3,11 +3,13 @@
 //! Checked data in scaled units, so that nothing over- or underflows on the way to the coefficients.
 
 use crate::MonotoneError;
-use rayon::prelude::*;
+use shapespline_polynomial::parallel;
 use std::ops::Range;
 
 /// Numbers from which passes over the data are shared out over threads, in parts of this size.
 pub(crate) const PART: usize = 1 << 14;
+/// Numbers that are worth several threads.
+pub(crate) const LONG: usize = 2 * PART;
 /// Quantities beyond this in scaled units leave no room for the products of the programs.
 const ROOM: f64 = 1e140;
 
@@ -125,27 +127,18 @@ impl Units {
 /// The first entry with a property (of its index and value).
 pub(crate) fn first(values: &[f64], property: impl Fn(usize, f64) -> bool + Sync) -> Option<usize> {
     // Every one is looked at: a loop that may end early is not done several numbers at once.
-    let any = |(k, part): (usize, &[f64])| {
-        let start = k * PART;
-        part.iter().enumerate().fold(false, |any, (i, v)| any | property(start + i, *v))
+    let any = |part: Range<usize>| {
+        let start = part.start;
+        let values = values[part].iter().enumerate();
+        values.fold(false, |any, (i, v)| any | property(start + i, *v))
     };
-    let found = if values.len() < 2 * PART {
-        any((0, values))
-    } else {
-        values.par_chunks(PART).enumerate().any(any)
-    };
+    let found = parallel::fold(values.len(), PART, any, |a, b| a | b);
     if found { (0..values.len()).find(|&i| property(i, values[i])) } else { None }
 }
 
 /// `of` every part of `0..n`, in order; on all threads where there are many.
 pub(crate) fn parts<T: Send>(n: usize, of: impl Fn(Range<usize>) -> T + Sync) -> Vec<T> {
-    let part = |k: usize| of(k * PART..n.min((k + 1) * PART));
-    let count = n.div_ceil(PART);
-    if n < 2 * PART {
-        (0..count).map(part).collect()
-    } else {
-        (0..count).into_par_iter().map(part).collect()
-    }
+    parallel::blocks(n, PART, of)
 }
 
 /// Parts one after another, and room for some entries more, which are zero. Copied on all threads where they are many:
@@ -154,38 +147,21 @@ pub(crate) fn joined<T: Copy + Default + Send + Sync>(parts: &[&[T]], more: usiz
     let total: usize = parts.iter().map(|part| part.len()).sum();
     let mut all = vec![T::default(); total + more];
     let mut rest = &mut all[..];
-    let mut pairs = Vec::with_capacity(parts.len());
+    let mut pairs: Vec<(&mut [T], &[T])> = Vec::with_capacity(parts.len());
     for part in parts {
         let (own, behind) = rest.split_at_mut(part.len());
         pairs.push((own, *part));
         rest = behind;
     }
-    let copy = |(own, part): (&mut [T], &[T])| own.copy_from_slice(part);
-    if total < 2 * PART {
-        pairs.into_iter().for_each(copy);
-    } else {
-        pairs.into_par_iter().for_each(copy);
-    }
+    let many = if total < LONG { usize::MAX } else { 0 };
+    parallel::fill(&mut pairs, many, |_, (own, part)| own.copy_from_slice(part));
     all
-}
-
-/// Both results, on two threads where they are long.
-pub(crate) fn both<A: Send, B: Send>(
-    length: usize,
-    a: impl FnOnce() -> A + Send,
-    b: impl FnOnce() -> B + Send,
-) -> (A, B) {
-    if length < 2 * PART { (a(), b()) } else { rayon::join(a, b) }
 }
 
 /// `by` every part of the numbers (with its start), on all threads where there are many.
 pub(crate) fn parts_mut(values: &mut [f64], by: impl Fn(usize, &mut [f64]) + Sync) {
-    if values.len() < 2 * PART {
-        by(0, values);
-    } else {
-        let parts = values.par_chunks_mut(PART).enumerate();
-        parts.for_each(|(k, part)| by(k * PART, part));
-    }
+    let part = |(): &mut (), start: usize, values: &mut [f64]| by(start, values);
+    parallel::parts::<_, _, _, ()>(values, PART, LONG, || (), part);
 }
 
 /// Spacings and secants of checked data in scaled units.
@@ -205,16 +181,12 @@ impl Data {
         let units = Units::of(x, y)?;
         let n = x.len() - 1;
         let (mut h, mut delta) = (vec![0.0; n], vec![0.0; n]);
-        let part = |(k, (h, delta)): (usize, (&mut [f64], &mut [f64]))| {
-            let own = k * PART..=k * PART + h.len();
+        let part = |(): &mut (), start: usize, (h, delta): (&mut [f64], &mut [f64])| {
+            let own = start..=start + h.len();
             units.differences(&x[own.clone()], &y[own], h, delta);
         };
-        if n < 2 * PART {
-            part((0, (&mut h, &mut delta)));
-        } else {
-            let parts = h.par_chunks_mut(PART).zip(delta.par_chunks_mut(PART));
-            parts.enumerate().for_each(part);
-        }
+        let both = (&mut *h, &mut *delta);
+        parallel::parts::<_, _, _, ()>(both, PART, LONG, || (), part);
         if let Some(i) = first(&delta, |_, d| !(d.abs() < f64::MAX)) {
             return Err(out_of_range("secant slope", "y", i, y[i]));
         }
@@ -271,16 +243,11 @@ pub(crate) fn check(x: &[f64], y: &[f64]) -> Result<f64, MonotoneError> {
         return Err(MonotoneError::Length { argument: "y", found: y.len(), expected: x.len() });
     }
     let n = x.len() - 1;
-    let part = |k: usize| {
-        let end = x.len().min((k + 1) * PART + 1);
-        Survey::of(&x[k * PART..end], &y[k * PART..end])
+    let part = |part: Range<usize>| {
+        let own = part.start..=part.end;
+        Survey::of(&x[own.clone()], &y[own])
     };
-    let survey = if n < 2 * PART {
-        Survey::of(x, y)
-    } else {
-        let parts = (0..n.div_ceil(PART)).into_par_iter().map(part);
-        parts.reduce(Survey::default, Survey::and)
-    };
+    let survey = parallel::fold(n, PART, part, Survey::and);
     // Room for second derivatives: h²f'' of a monotone quintic is up to sixty times the step of y.
     let fits = |low: f64, high: f64| high / 4.0 - low / 4.0 < f64::MAX / 256.0;
     let spread = (x[n] - x[0]).is_finite() && fits(survey.low, survey.high);

@@ -8,10 +8,10 @@ use crate::extrapolation::Extrapolation;
 use crate::quartic::{MonotoneQuartic, QuarticOptions};
 use crate::quintic::{MonotoneQuintic, QuinticOptions};
 use crate::spline::MonotoneSpline;
-use rayon::prelude::*;
+use shapespline_polynomial::parallel;
 
-/// Fits per task: small fits take microseconds, a task should take a good many.
-const GRAIN: usize = 32;
+/// Fits that are many: small ones take microseconds, and a thread should have a good many to do.
+const MANY: usize = 64;
 
 /// An interpolant that can be made from data and options.
 pub trait MonotoneMany: Sized + Send {
@@ -45,17 +45,12 @@ pub trait MonotoneMany: Sized + Send {
                 expected: fits.len() + 1,
             });
         }
-        let rows: Vec<Vec<f64>> = fits
-            .par_iter()
-            .with_min_len(GRAIN)
-            .zip(offsets.par_windows(2))
-            .map(|(fit, w)| {
-                let queries = &queries[w[0]..w[1]];
-                let mut out = vec![0.0; queries.len()];
-                fit.function().evaluate_into(queries, nu, extrapolate, &mut out);
-                out
-            })
-            .collect();
+        let rows: Vec<Vec<f64>> = parallel::map(fits.len(), MANY, |k| {
+            let queries = &queries[offsets[k]..offsets[k + 1]];
+            let mut out = vec![0.0; queries.len()];
+            fits[k].function().evaluate_into(queries, nu, extrapolate, &mut out);
+            out
+        });
         Ok(rows.concat())
     }
 
@@ -73,10 +68,11 @@ pub trait MonotoneMany: Sized + Send {
         if queries.is_empty() {
             return out;
         }
-        out.par_chunks_mut(queries.len())
-            .with_min_len(GRAIN)
-            .zip(fits)
-            .for_each(|(o, fit)| fit.function().evaluate_into(queries, nu, extrapolate, o));
+        let (size, many) = (queries.len(), MANY * queries.len());
+        let column = |(): &mut (), start: usize, out: &mut [f64]| {
+            fits[start / size].function().evaluate_into(queries, nu, extrapolate, out);
+        };
+        parallel::parts::<_, _, _, ()>(&mut *out, size, many, || (), column);
         out
     }
 }
@@ -133,11 +129,9 @@ pub fn fit_columns<F: MonotoneMany>(
         let expected = if x.is_empty() { 0 } else { (y.len() / x.len() + 1) * x.len() };
         return Err(MonotoneError::Length { argument: "y", found: y.len(), expected });
     }
-    y.par_chunks(x.len())
-        .with_min_len(GRAIN)
-        .enumerate()
-        .map(|(row, y)| F::make(x, y, options).map_err(|e| in_row(row, e)))
-        .collect()
+    let n = x.len();
+    let fit = |row: usize| F::make(x, &y[row * n..(row + 1) * n], options);
+    parallel::map(y.len() / n, MANY, |row| fit(row).map_err(|e| in_row(row, e)))
 }
 
 /// Fit rows with their own x, in parallel: row k takes entries `offsets[k] .. offsets[k+1]` of `x` and `y`.
@@ -155,14 +149,11 @@ pub fn fit_rows<F: MonotoneMany>(
         return Err(MonotoneError::Length { argument: "y", found: y.len(), expected: x.len() });
     }
     check_offsets(offsets, x.len())?;
-    offsets
-        .par_windows(2)
-        .with_min_len(GRAIN)
-        .enumerate()
-        .map(|(row, w)| {
-            F::make(&x[w[0]..w[1]], &y[w[0]..w[1]], options).map_err(|e| in_row(row, e))
-        })
-        .collect()
+    let fit = |row: usize| {
+        let own = offsets[row]..offsets[row + 1];
+        F::make(&x[own.clone()], &y[own], options)
+    };
+    parallel::map(offsets.len() - 1, MANY, |row| fit(row).map_err(|e| in_row(row, e)))
 }
 
 fn in_row(row: usize, source: MonotoneError) -> MonotoneError {

@@ -14,7 +14,7 @@ use crate::energy::{Fairness, is_flat};
 use crate::interrupt::GoOn;
 use crate::optimal::{self, Optimum, Prescribed, coefficients, fixed_by_data};
 use crate::quartic_form::certified_nonnegative;
-use rayon::prelude::*;
+use shapespline_polynomial::parallel;
 use std::ops::Range;
 
 /// Nodes a window answers for, and nodes it looks beyond on either side.
@@ -92,12 +92,10 @@ pub(crate) fn optimise(
         Window { segments, optimum }
     };
     let solve_or_stop = |segments| go_on().is_continue().then(|| solve(segments));
-    // Few segments cost less than waking threads; and a forked process has none to wake.
-    let windows: Option<Vec<Window>> = if n < 8192 {
-        ranges.into_iter().map(solve_or_stop).collect()
-    } else {
-        ranges.into_par_iter().with_min_len(2).map(solve_or_stop).collect()
-    };
+    // Few segments cost less than waking threads.
+    let many = if n < 8192 { usize::MAX } else { 0 };
+    let windows: Option<Vec<Window>> =
+        parallel::map(ranges.len(), many, |k| solve_or_stop(ranges[k].clone()));
     let windows = windows?;
     let mut joined: Vec<Window> = Vec::with_capacity(windows.len());
     // seams[k]: the last node that window k decides.

@@ -7,6 +7,7 @@ use crate::Slopes;
 use crate::data::{Data, PART, Units, check_finite, first};
 use crate::extrapolation::Extrapolation;
 use crate::spline::{Cached, MonotoneKind, MonotoneSpline};
+use shapespline_polynomial::parallel;
 use std::ops::Deref;
 
 mod assemble;
@@ -125,11 +126,7 @@ impl MonotoneQuartic {
                 return Err(crate::data::out_of_range("secant slope", "y", i, y[i]));
             }
         }
-        let (own_x, own_y) = if n < PART {
-            (x.to_vec(), y.to_vec())
-        } else {
-            rayon::join(|| x.to_vec(), || y.to_vec())
-        };
+        let (own_x, own_y) = parallel::both(n >= PART, || x.to_vec(), || y.to_vec());
         let spline = MonotoneSpline {
             x: own_x,
             y: own_y,

@@ -2,7 +2,7 @@
 
 //! One segment as it is evaluated: a cache line of numbers that keeps the ends exact.
 
-use rayon::prelude::*;
+use shapespline_polynomial::parallel;
 
 /// `f(t) = y₀ + Δy t + t(t−1) q(2t−1)` with a cubic q: every polynomial of degree five through the two data points.
 ///
@@ -162,11 +162,7 @@ pub(crate) fn segment_polynomials(
     }
     let one = |k: usize| tile(k * TILE, TILE.min(n - k * TILE));
     let count = n.div_ceil(TILE);
-    let tiles: Vec<[SegmentPolynomial; TILE]> = if count <= 2 * TILES {
-        (0..count).map(one).collect()
-    } else {
-        (0..count).into_par_iter().with_min_len(TILES).map(one).collect()
-    };
+    let tiles: Vec<[SegmentPolynomial; TILE]> = parallel::map(count, 2 * TILES + 1, one);
     let mut polynomials = tiles.into_flattened();
     polynomials.truncate(n);
     polynomials

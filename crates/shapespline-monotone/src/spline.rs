@@ -3,7 +3,7 @@
 //! The interpolant that all schemes make: data, slopes, and one evaluation polynomial per piece.
 
 use crate::cubic::Pieces;
-use crate::data::{Units, both, first};
+use crate::data::{LONG, Units, first};
 use crate::extrapolation::Extrapolation;
 use crate::integrals::Lazy;
 use crate::inverse::Inverse;
@@ -11,6 +11,7 @@ use crate::locate::Locator;
 use crate::piecewise::PiecewisePolynomial;
 use crate::segment_polynomial::{self, SegmentPolynomial, TILE};
 use once_cell::race::OnceBox;
+use shapespline_polynomial::parallel::both;
 
 /// What the pieces are beyond their end values and slopes.
 #[derive(Debug, Clone, PartialEq)]
@@ -168,7 +169,7 @@ impl MonotoneSpline {
         let polynomials = segment_polynomial::segment_polynomials(x.len() - 1, tile);
         let own = nodes.len() < x.len();
         let points = own.then(|| {
-            let (x, y) = both(nodes.len(), || data[0].to_vec(), || data[1].to_vec());
+            let (x, y) = both(nodes.len() >= LONG, || data[0].to_vec(), || data[1].to_vec());
             Box::new(Points { x, y, nodes })
         });
         let (kind, cached) = (MonotoneKind::Cubic { z }, Cached::default());

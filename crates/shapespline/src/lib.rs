@@ -18,6 +18,7 @@
 //! | [`geometry`] | data polygon, parametrisations, Bézier segments, exact signs, piecewise curves |
 //! | [`search`] | automatic tension: raise where a criterion fails, then lower |
 //! | [`banded`] | tridiagonal, cyclic and block solvers |
+//! | [`polynomial`] | Bernstein polynomials whose signs are proved, bracketed roots, knot search, shared work |
 //!
 //! ```
 //! use shapespline::prelude::*;
@@ -64,6 +65,8 @@ pub use shapespline_geometry as geometry;
 pub use shapespline_monotone as monotone;
 #[doc(inline)]
 pub use shapespline_nu as nu;
+#[doc(inline)]
+pub use shapespline_polynomial as polynomial;
 #[doc(inline)]
 pub use shapespline_search as search;
 #[doc(inline)]

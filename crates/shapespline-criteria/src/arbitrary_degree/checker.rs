@@ -5,8 +5,8 @@
 use std::ops::ControlFlow;
 
 use glam::DVec3;
-use rayon::prelude::*;
 use shapespline_geometry::{DataPolygon, InputError, PiecewiseBezier, length, polynomial::Sign};
+use shapespline_polynomial::parallel;
 
 use super::{
     Question, Segment,
@@ -19,8 +19,7 @@ use crate::{
     Violations, checker::Cubic, node_conditions::node_conditions, rounding::LEG_ERROR,
 };
 
-/// Segments from on which they are checked on all threads. Not fewer, and none of rayon's iterators below:
-/// Python calls small work where it stands, and after a fork the threads of rayon's own pool are gone.
+/// Segments from on which they are checked on all threads.
 const MANY: usize = 8192;
 
 /// How far from the points a curve may pass by default, over the extent of the points.
@@ -154,15 +153,10 @@ impl<'a> CurveChecker<'a> {
             Some(cubic) => Some(self.check_cubic(i, &cubic)),
             None => go_on().is_continue().then(|| self.check_segment(i)),
         };
-        let says = |found: &Option<Scan>| found.as_ref().is_none_or(|found| !found.is_empty());
         let open = self.open_segments();
-        let found: Vec<Scan> = if open.len() < MANY {
-            open.iter().map(of).filter(says).collect::<Option<_>>()?
-        } else {
-            open.par_iter().with_min_len(64).map(of).filter(says).collect::<Option<_>>()?
-        };
+        let found: Option<Vec<Scan>> = parallel::map(open.len(), MANY, |k| of(&open[k]));
         let mut report = self.checker.blank_report();
-        for Scan { records, undecided } in found {
+        for Scan { records, undecided } in found? {
             for record in &records {
                 report.counts[record.criterion as usize].violated += 1;
             }
@@ -355,12 +349,6 @@ impl<'a> CurveChecker<'a> {
 pub(super) struct Scan {
     pub(super) records: Vec<Record>,
     pub(super) undecided: Vec<Undecided>,
-}
-
-impl Scan {
-    fn is_empty(&self) -> bool {
-        self.records.is_empty() && self.undecided.is_empty()
-    }
 }
 
 /// The report on any piecewise Bézier curve through the points of a polygon.

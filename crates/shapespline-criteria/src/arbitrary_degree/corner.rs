@@ -6,8 +6,10 @@
 //! segment there does the same with the same tangent. Where the two differ, each of them is held against the
 //! other chord as well.
 
-use rayon::prelude::*;
+use std::ops::Range;
+
 use shapespline_geometry::{DVec3, length, normalize};
+use shapespline_polynomial::parallel;
 
 use super::CurveChecker;
 use crate::{
@@ -25,12 +27,8 @@ impl CurveChecker<'_> {
         let of = |i: usize| (i, self.corner_violations_of(i, Lean::Against));
         let fails = |violation: &(usize, Violations)| !violation.1.is_empty();
         let is_cubic = |&i: &usize| self.cubic(i).is_some();
-        if n < 2 * BLOCK {
-            (0..n).filter(is_cubic).map(of).filter(fails).collect()
-        } else {
-            let all = (0..n).into_par_iter().with_min_len(BLOCK);
-            all.filter(is_cubic).map(of).filter(fails).collect()
-        }
+        let block = |i: Range<usize>| i.filter(is_cubic).map(of).filter(fails).collect::<Vec<_>>();
+        parallel::blocks::<_, Vec<_>>(n, BLOCK, block).concat()
     }
 
     /// The same of one segment: what is not proved, or what certainly fails.

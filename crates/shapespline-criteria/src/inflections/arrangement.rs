@@ -14,8 +14,8 @@
 use std::ops::ControlFlow;
 
 use glam::DVec3;
-use rayon::prelude::*;
 use shapespline_geometry::bernstein::multiply_quadratics;
+use shapespline_polynomial::parallel;
 
 use super::{
     roots::roots,
@@ -44,11 +44,10 @@ pub(super) fn most(
         most.walk = i;
         Some(most)
     };
-    (0..lines + sequence.arcs.len())
-        .into_par_iter()
-        .with_min_len(8)
-        .map_init(Walk::default, walk)
-        .try_reduce(|| Maximum::NONE, |a, b| Some(a.or(b)))
+    // Callers know how long a walk may be: they enter a pool for any number.
+    let all: Option<Vec<Maximum>> =
+        parallel::map_with(lines + sequence.arcs.len(), 0, Walk::default, walk);
+    Some(all?.into_iter().fold(Maximum::NONE, Maximum::or))
 }
 
 /// The buffers of a walk.

@@ -18,7 +18,7 @@ mod piece;
 use std::ops::ControlFlow;
 
 use glam::DVec3;
-use rayon::prelude::*;
+use shapespline_polynomial::parallel;
 
 use crate::{Dimension, PiecewiseBezier, vector::power_of_two};
 use extrema::Extrema;
@@ -30,9 +30,8 @@ const SMOOTH: f64 = 1e-6;
 /// Curvatures that differ by less than this part of themselves are continuous.
 const CONTINUOUS: f64 = 1e-9;
 
-/// Curves of this many pieces are measured on all threads. Shorter ones stay on the calling thread: rayon's
-/// threads do not survive a fork.
-const PARALLEL: usize = 8192;
+/// Curves of this many pieces are measured on all threads.
+const MANY: usize = 8192;
 
 /// A place on a piecewise curve.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -108,12 +107,7 @@ fn pieces_of(
     go_on: &(dyn Fn() -> ControlFlow<()> + Sync),
 ) -> Option<Vec<Measured>> {
     let measure = |i: usize| go_on().is_continue().then(|| measure(curve, i, unit));
-    let n = curve.pieces();
-    if n < PARALLEL {
-        (0..n).map(measure).collect()
-    } else {
-        (0..n).into_par_iter().with_min_len(PARALLEL / 8).map(measure).collect()
-    }
+    parallel::map(curve.pieces(), MANY, measure)
 }
 
 /// A power of two near the largest extent of a piece, so that nothing overflows.

@@ -6,10 +6,10 @@ use super::layer::Layer;
 use super::piece::{Piece, least};
 use super::stretch::{Room, Steps, Stretch};
 use crate::MonotoneError;
-use crate::data::{Data, both, joined, parts};
+use crate::data::{Data, LONG, joined, parts};
 use crate::energy::is_flat;
 use crate::interrupt::{GoOn, check_interrupt};
-use rayon::prelude::*;
+use shapespline_polynomial::parallel;
 use std::ops::Range;
 
 /// Nodes that one part of long data answers for: with its arrays it fits into a core's cache.
@@ -73,8 +73,8 @@ impl Problem {
         let n = data.len();
         let sign = |delta: &f64| if is_flat(*delta) { 0.0 } else { delta.signum() };
         let rise = |(h, delta): (&f64, &f64)| if is_flat(*delta) { 0.0 } else { delta.abs() * h };
-        let (sign, (h, d)): (Vec<f64>, (Vec<f64>, Vec<f64>)) = both(
-            n,
+        let (sign, (h, d)): (Vec<f64>, (Vec<f64>, Vec<f64>)) = parallel::both(
+            n >= LONG,
             || data.delta.iter().map(sign).collect(),
             || (data.h.clone(), data.h.iter().zip(&data.delta).map(rise).collect()),
         );
@@ -132,8 +132,8 @@ impl Problem {
             let Steps { solves, converged } = steps;
             return Ok(Slopes { m, fine, over: Vec::new(), solves, converged });
         }
-        let parts: Vec<_> = (0..count).into_par_iter().map_init(Room::default, part).collect();
-        let parts = parts.into_iter().collect::<Result<Vec<_>, _>>()?;
+        let parts: Result<Vec<_>, _> = parallel::map_with(count, 0, Room::default, part);
+        let parts = parts?;
         let slopes: Vec<&[f64]> = parts.iter().map(|((m, _), _)| &m[..]).collect();
         let fine: Vec<&[[f64; 2]]> = parts.iter().map(|((_, fine), _)| &fine[..]).collect();
         Ok(Slopes {

@@ -7,7 +7,7 @@ use super::scale::{Failing, keeps};
 use crate::data::{PowerOfTwo, Units};
 use crate::segment_polynomial::{SegmentPolynomial, TILE};
 use crate::slopes::{end, harmonic, limit};
-use rayon::prelude::*;
+use shapespline_polynomial::parallel;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Tiles that one thread works through at least; fewer than twice that are no work to share.
@@ -100,13 +100,8 @@ impl Assembly<'_> {
             ((scratch.polynomials, d), (scratch.e, scratch.lambda))
         };
         let count = n.div_ceil(TILE);
-        let ((polynomials, d), (e, scale)): Tiles = if count <= 2 * TILES {
-            let mut scratch = Scratch::default();
-            (0..count).map(|tile| work(&mut scratch, tile)).unzip()
-        } else {
-            let tiles = (0..count).into_par_iter().with_min_len(TILES);
-            tiles.map_init(Scratch::default, work).unzip()
-        };
+        let ((polynomials, d), (e, scale)): Tiles =
+            parallel::map_with(count, 2 * TILES + 1, Scratch::default, work);
         let numbers = |tiles: Vec<Numbers>| {
             let mut numbers = tiles.into_flattened();
             numbers.truncate(n);

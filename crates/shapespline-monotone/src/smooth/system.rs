@@ -15,6 +15,7 @@
 
 use super::interval::{Form, Model};
 use super::rows::{add, bent_rows, eliminate, eliminate_sorted, interval_rows, met};
+use shapespline_polynomial::parallel;
 
 /// The stiffness of what is held: its square root is far above all others, and its square is still a number.
 pub(super) const HELD: f64 = 1e120;
@@ -235,7 +236,11 @@ fn both(
     mut right: impl FnMut(usize) + Send,
 ) {
     if counts.into_iter().min() >= Some(LONG) {
-        rayon::join(|| (0..counts[0]).for_each(&mut left), || (0..counts[1]).for_each(&mut right));
+        parallel::both(
+            true,
+            || (0..counts[0]).for_each(&mut left),
+            || (0..counts[1]).for_each(&mut right),
+        );
         return;
     }
     for k in 0..counts[0].max(counts[1]) {

@@ -3,8 +3,10 @@
 //! Position, derivatives, curvature, torsion and frame at any parameters.
 
 use pyo3::{IntoPyObjectExt, prelude::*};
-use rayon::prelude::*;
-use shapespline::geometry::{DVec3, Side};
+use shapespline::{
+    geometry::{DVec3, Side},
+    polynomial::parallel,
+};
 
 use super::{Curve, SpaceCurve};
 use crate::{
@@ -12,11 +14,8 @@ use crate::{
     input::Query,
     options,
     output::{FloatArray, filled, shaped, vector},
-    work::{interruptible, parts},
+    work::{PARALLEL, interruptible, parts},
 };
-
-/// Parameters a task when a quantity is evaluated in parallel.
-const BLOCK: usize = 8192;
 
 impl SpaceCurve {
     /// `COLUMNS` numbers for each parameter, computed from the curve: an array of a shape.
@@ -28,17 +27,13 @@ impl SpaceCurve {
         of: impl Fn(&dyn Curve, f64) -> [f64; COLUMNS] + Send + Sync,
     ) -> PyResult<FloatArray<'py>> {
         let curve: &dyn Curve = &**self.curve;
-        let row = |(row, &u): (&mut [f64; COLUMNS], &f64)| *row = of(curve, u);
         filled(py, shape, |out| {
             let rows = out.as_chunks_mut().0;
             interruptible(py, u.len(), |go_on| {
                 for part in parts(u.len()).take_while(|_| go_on().is_continue()) {
                     let (rows, u) = (&mut rows[part.clone()], &u[part]);
-                    if u.len() <= BLOCK {
-                        rows.iter_mut().zip(u).for_each(row);
-                    } else {
-                        rows.par_iter_mut().zip(u).with_min_len(BLOCK).for_each(row);
-                    }
+                    let row = |i: usize, row: &mut [f64; COLUMNS]| *row = of(curve, u[i]);
+                    parallel::fill(rows, PARALLEL, row);
                 }
             })
         })

@@ -3,8 +3,10 @@
 //! Arc length and samples.
 
 use pyo3::prelude::*;
-use rayon::prelude::*;
-use shapespline::geometry::{ArcLength, Side};
+use shapespline::{
+    geometry::{ArcLength, Side},
+    polynomial::parallel,
+};
 
 use super::SpaceCurve;
 use crate::{
@@ -130,12 +132,12 @@ impl SpaceCurve {
                     }
                     let out = &mut out[part.start * columns..part.end * columns];
                     // In parallel only where the pool of this process was entered.
-                    let u: Vec<f64> = match rayon::current_thread_index() {
-                        Some(_) if lengths.is_some() => {
-                            part.into_par_iter().map(parameter).collect()
-                        }
-                        _ => part.map(parameter).collect(),
+                    let many = match rayon::current_thread_index() {
+                        Some(_) if lengths.is_some() => 0,
+                        _ => usize::MAX,
                     };
+                    let u: Vec<f64> =
+                        parallel::map(part.len(), many, |k| parameter(part.start + k));
                     path.evaluate_into(&u, 0, Side::Right, out)?;
                 }
                 Ok(())

@@ -5,11 +5,13 @@
 use std::{convert::Infallible, ops::ControlFlow};
 
 use pyo3::{exceptions::PyKeyboardInterrupt, prelude::*};
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
-use shapespline::monotone::{
-    BSpline, Extrapolation, Fairness, MonotoneCubic, MonotoneError, MonotoneQuartic,
-    MonotoneQuintic, MonotoneSpline, PiecewisePolynomial,
+use shapespline::{
+    monotone::{
+        BSpline, Extrapolation, Fairness, MonotoneCubic, MonotoneError, MonotoneQuartic,
+        MonotoneQuintic, MonotoneSpline, PiecewisePolynomial,
+    },
+    polynomial::parallel,
 };
 
 use crate::{
@@ -137,7 +139,7 @@ pub(crate) fn fit_all<F: Send>(
                 // On this thread: what a long fit does itself in parallel finds the pool free.
                 fit(0).map(|f| vec![f])
             } else {
-                (0..count).into_par_iter().map(fit).collect()
+                parallel::map(count, 0, fit)
             }
         })?
     };
@@ -197,11 +199,8 @@ impl Fits {
         let size = self.size();
         without_gil(py, size, || {
             let one = |k| work(k, self.column(k));
-            if size < PARALLEL || self.len() == 1 {
-                (0..self.len()).map(one).collect()
-            } else {
-                (0..self.len()).into_par_iter().map(one).collect()
-            }
+            let few = size < PARALLEL || self.len() == 1;
+            parallel::map(self.len(), if few { usize::MAX } else { 0 }, one)
         })
     }
 
@@ -219,22 +218,20 @@ impl Fits {
         for k in 0..self.len() {
             let row;
             (row, rest) = rest.split_at_mut(of(k).len());
-            rows.push((k, row));
+            rows.push(((k, row), Ok(())));
         }
         let done = interruptible(py, size, |go_on| {
-            let one = |(k, row): (usize, &mut [f64])| {
+            let one = |(k, row): &mut (usize, &mut [f64])| {
                 parts(row.len()).take_while(|_| go_on().is_continue()).try_for_each(|part| {
-                    let (places, values) = (&of(k)[part.clone()], &mut row[part]);
-                    work(self.column(k), places, values).map_err(|e| (k, e))
+                    let (places, values) = (&of(*k)[part.clone()], &mut row[part]);
+                    work(self.column(*k), places, values).map_err(|e| (*k, e))
                 })
             };
+            let few = size < PARALLEL || self.len() == 1;
+            let put = |_, (row, done): &mut (_, Result<(), _>)| *done = one(row);
+            parallel::fill(&mut rows, if few { usize::MAX } else { 0 }, put);
             // The first of the failures, whatever the order in which they come.
-            let failures: Vec<(usize, E)> = if size < PARALLEL || self.len() == 1 {
-                rows.into_iter().filter_map(|row| one(row).err()).collect()
-            } else {
-                rows.into_par_iter().filter_map(|row| one(row).err()).collect()
-            };
-            failures.into_iter().next().map_or(Ok(()), Err)
+            rows.into_iter().try_for_each(|(_, done)| done)
         })?;
         Ok(done.map(|()| out))
     }
@@ -267,16 +264,13 @@ impl Fits {
             return Ok(out);
         }
         interruptible(py, size, |go_on| {
-            let work = |(k, row): (usize, &mut [f64])| {
+            let work = |(): &mut (), start: usize, row: &mut [f64]| {
+                let k = start / each;
                 for part in parts(each).take_while(|_| go_on().is_continue()) {
                     self.column(k).evaluate_into(&of(k)[part.clone()], nu, mode, &mut row[part]);
                 }
             };
-            if size < PARALLEL {
-                out.chunks_mut(each).enumerate().for_each(work);
-            } else {
-                out.par_chunks_mut(each).enumerate().for_each(work);
-            }
+            parallel::parts::<_, _, _, ()>(&mut *out, each, PARALLEL, || (), work);
         })?;
         Ok(out)
     }

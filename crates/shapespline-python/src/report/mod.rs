@@ -13,10 +13,10 @@ use pyo3::{
     prelude::*,
     types::{PyDict, PyTuple},
 };
-use rayon::prelude::*;
 use shapespline::{
     criteria::{self, Record},
     geometry::Fairness,
+    polynomial::parallel,
 };
 
 use crate::{
@@ -24,7 +24,7 @@ use crate::{
     curve::boundary_object,
     error::subject_error,
     pickle::{self, PickledKind, Reduced},
-    work::{GoOn, interrupted, interruptible},
+    work::{GoOn, PARALLEL, interrupted, interruptible},
 };
 
 mod comparison;
@@ -36,9 +36,6 @@ use comparison::{Comparison, Cost};
 
 pub(crate) use record::ShapeRecord;
 pub(crate) use subject::Subject;
-
-/// Segments a task when records are made.
-const BLOCK: usize = 2048;
 
 /// Most segments of which a printed report measures the fairness: 130 µs each, twice, on a busy machine.
 const MEASURED: usize = 1000;
@@ -99,11 +96,9 @@ impl ShapeReport {
                     let listed = go_on().is_continue().then(|| self.report.listed());
                     listed.iter().flat_map(|listed| listed.iter()).map(record).collect::<Vec<T>>()
                 };
-                if segments <= 2 * BLOCK {
-                    (0..segments).flat_map(of).collect()
-                } else {
-                    (0..segments).into_par_iter().with_min_len(BLOCK).flat_map_iter(of).collect()
-                }
+                let all: Vec<Vec<T>> =
+                    parallel::blocks(segments, PARALLEL / 2, |block| block.flat_map(of).collect());
+                all.into_iter().flatten().collect()
             })
         });
         records?.map_err(subject_error)
