@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 import shapespline as ss
+from shapespline import _core
 
 #: Optional, or slow to import: whoever does not use them does not wait for them.
 LATER = ("scipy", "matplotlib", "mpl_toolkits", "pandas", "argparse", "doctest", "unittest")
@@ -40,6 +41,28 @@ def test_nothing_outside_knows_the_command_line():
         if "_cli" in p.read_text(encoding="utf-8")
     }
     assert {name for name in files if not name.startswith("_cli/")} == {"__main__.py"}
+
+
+def test_the_compiled_module_does_without_the_package():
+    code = f"""
+import importlib.util, sys
+spec = importlib.util.spec_from_file_location("_core", {_core.__file__!r})
+core = importlib.util.module_from_spec(spec)
+spec.loader.exec_module(core)
+curve = core.NuSpline([[0, 0, 0], [4, 0, 0], [4.5, 0.5, 0], [4.5, 1, 0.5], [4.5, 1, 5]])
+report = curve.check()
+print(bool(report.nodes), report.undecided, report.oscillations, curve.__reduce__()[0].__name__)
+try:
+    core.NuSpline([[0, 0]])
+except core.InputError as error:
+    print(error)
+print([name for name in sys.modules if name.startswith("shapespline")])
+"""
+    first, second, third = run(code).splitlines()
+    assert first.startswith("True [] [")
+    assert first.endswith("_from_bytes")
+    assert second.startswith("points must")
+    assert third == "[]"
 
 
 @pytest.mark.parametrize("name", LATER[:4])

@@ -11,14 +11,17 @@ True
 (2, 3)
 """
 
+from shapespline import _attached as _attached
 from shapespline import interchange, plot
 from shapespline._core import (
     CatmullRom,
+    ConvergenceError,
     Diagnostics,
     FairDiagnostics,
     Fairness,
     FairSpline,
     FairStep,
+    InputError,
     MonotoneCubic,
     MonotoneDiagnostics,
     MonotoneQuartic,
@@ -26,7 +29,9 @@ from shapespline._core import (
     MonotoneRows,
     MonotoneSmoothing,
     MonotoneSpline,
+    NodeRecord,
     NuSpline,
+    OscillationRecord,
     PiecewiseBezier,
     PiecewisePolynomial,
     PiecewiseRows,
@@ -36,18 +41,17 @@ from shapespline._core import (
     SpaceCurve,
     Tangents,
     TensionSpline,
+    UndecidedRecord,
     __version__,
     bezier_like,
     fit_many_monotone,
     minimal_bending,
     smooth_monotone,
 )
-from shapespline._errors import ConvergenceError, InputError
 from shapespline._functions import check_monotone, fit_monotone, histospline
 from shapespline._many import Fits, fit_many
 from shapespline._monotone_check import MonotoneRecord, MonotoneReport
 from shapespline._polygon import PolygonShape, polygon_shape
-from shapespline._records import NodeRecord, OscillationRecord, UndecidedRecord
 from shapespline._shape import InflectionCount, check_shape, fairness, inflection_count
 from shapespline._verbs import fit
 

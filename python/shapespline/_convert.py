@@ -12,8 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from shapespline._core import MonotoneSpline, PiecewiseBezier, SpaceCurve, _floats
-from shapespline._errors import InputError
+from shapespline._core import InputError, MonotoneSpline, PiecewiseBezier, SpaceCurve, _floats
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

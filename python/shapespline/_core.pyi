@@ -18,17 +18,17 @@ from scipy.interpolate import (  # type: ignore[import-untyped, unused-ignore]
 )
 from typing_extensions import Self, disjoint_base
 
-from shapespline._records import NodeRecord, OscillationRecord, UndecidedRecord
-
 __version__: str
 
 __all__ = [
     "CatmullRom",
+    "ConvergenceError",
     "Diagnostics",
     "FairDiagnostics",
     "FairSpline",
     "FairStep",
     "Fairness",
+    "InputError",
     "MonotoneCubic",
     "MonotoneDiagnostics",
     "MonotoneQuartic",
@@ -36,7 +36,9 @@ __all__ = [
     "MonotoneRows",
     "MonotoneSmoothing",
     "MonotoneSpline",
+    "NodeRecord",
     "NuSpline",
+    "OscillationRecord",
     "PiecewiseBezier",
     "PiecewisePolynomial",
     "PiecewiseRows",
@@ -46,6 +48,7 @@ __all__ = [
     "SpaceCurve",
     "Tangents",
     "TensionSpline",
+    "UndecidedRecord",
     "__version__",
     "_check_shape",
     "_curve_inflections",
@@ -110,6 +113,67 @@ class _Report(TypedDict):
     violations: list[_Record]
     undecided: list[_Undecided]
     straight: list[int]
+
+class InputError(ValueError):
+    """An argument that cannot be used; the text says which, where, what it must be and what it is.
+
+    Attributes
+    ----------
+    argument : str
+        Name of the argument.
+    index : int, tuple of int, or None
+        Where in the argument; of a collection, the index of the curve or row comes first.
+    value : object
+        The value there: a number, a name, a shape, or what was measured of it.
+
+    Examples
+    --------
+    >>> import shapespline as ss
+    >>> try:
+    ...     ss.NuSpline([[0, 0], [1, 1], [2, float("nan")]])
+    ... except ss.InputError as error:
+    ...     print(error.argument, error.index, error.value)
+    points 2 nan
+    """
+
+    argument: str
+    index: int | tuple[int, ...] | None
+    value: Any
+    def __init__(
+        self,
+        message: str,
+        argument: str = "",
+        index: int | tuple[int, ...] | None = None,
+        value: Any = None,
+    ) -> None: ...
+
+class ConvergenceError(RuntimeError):
+    """No curve was found that keeps the shape of its points.
+
+    The limit of iterations was reached first, or tension can rise no further where a criterion is
+    violated: ``curve.diagnostics.status`` says which.
+
+    Attributes
+    ----------
+    curve : SpaceCurve
+        The last curve: it interpolates the points, but violates what ``report`` lists.
+    report : ShapeReport
+        The complete check of that curve.
+
+    Examples
+    --------
+    >>> import shapespline as ss
+    >>> points = [[0, 0, 0], [4, 0, 0], [4.5, 0.5, 0], [4.5, 1, 0.5], [4.5, 1, 5]]
+    >>> try:
+    ...     ss.NuSpline.shape_preserving(points, "uniform", max_iterations=1)
+    ... except ss.ConvergenceError as error:
+    ...     print(len(error.report.violations), error.curve.tension)
+    6 [0. 0. 0. 0. 0.]
+    """
+
+    curve: SpaceCurve
+    report: ShapeReport
+    def __init__(self, message: str, curve: SpaceCurve, report: ShapeReport) -> None: ...
 
 @disjoint_base
 class SpaceCurve:
@@ -713,6 +777,26 @@ class FairSpline(SpaceCurve):
     def diagnostics(self) -> FairDiagnostics | None: ...  # type: ignore[override]
     @property
     def history(self) -> list[FairStep] | None: ...  # type: ignore[override]
+    def to_bspline(self) -> BSpline:
+        """Return the curve as a B-spline of SciPy.
+
+        Returns
+        -------
+        scipy.interpolate.BSpline
+            Cubic, with simple knots at the points and at the extra knots, and triple ones at corners.
+            Knots and coefficients of a closed curve go around, and it extrapolates periodically.
+
+        Raises
+        ------
+        ModuleNotFoundError
+            If SciPy is not installed (``pip install "shapespline[scipy]"``).
+
+        Examples
+        --------
+        >>> import shapespline as ss
+        >>> ss.FairSpline([[0, 0], [3, 4], [6, 8]]).to_bspline().t
+        array([ 0.,  0.,  0.,  0.,  5., 10., 10., 10., 10.])
+        """
     def __copy__(self) -> FairSpline: ...
     def __deepcopy__(self, _memo: object) -> FairSpline: ...
 
@@ -1702,6 +1786,15 @@ class ShapeRecord:
     >>> worst.criterion, worst.segment, worst.satisfied
     ('torsion', 1, False)
     """
+    def __new__(
+        cls,
+        segment: int,
+        criterion: str,
+        applicable: bool,
+        satisfied: bool,
+        margin: float,
+        location: float,
+    ) -> Self: ...
     @property
     def segment(self) -> int:
         """Index of the segment, from 0."""
@@ -1720,6 +1813,148 @@ class ShapeRecord:
     @property
     def location(self) -> float:
         """Parameter at which the margin is smallest; NaN where not applicable."""
+    def __eq__(self, other: object, /) -> bool: ...
+    def __ne__(self, other: object, /) -> bool: ...
+    def __hash__(self) -> int: ...
+    def __reduce__(self) -> tuple[object, tuple[bytes]]: ...
+
+@final
+class UndecidedRecord:
+    """A criterion that could be neither proved nor refuted on a segment.
+
+    Something in it is zero to rounding: the sign lies within the bound of its error.
+
+    Attributes
+    ----------
+    segment : int
+        Index of the segment, from 0.
+    criterion : str
+        Name of the criterion.
+    interval : tuple[float, float]
+        The parameters between which the question stays open.
+
+    Examples
+    --------
+    >>> import shapespline as ss
+    >>> ss.UndecidedRecord(3, "torsion", (0.25, 0.5)).interval
+    (0.25, 0.5)
+    """
+    def __new__(cls, segment: int, criterion: str, interval: tuple[float, float]) -> Self: ...
+    @property
+    def segment(self) -> int:
+        """Index of the segment, from 0."""
+    @property
+    def criterion(self) -> str:
+        """Name of the criterion."""
+    @property
+    def interval(self) -> tuple[float, float]:
+        """The parameters between which the question stays open."""
+    def __eq__(self, other: object, /) -> bool: ...
+    def __ne__(self, other: object, /) -> bool: ...
+    def __hash__(self) -> int: ...
+    def __reduce__(self) -> tuple[object, tuple[bytes]]: ...
+
+@final
+class NodeRecord:
+    """A condition at a node to which it applies: information, which enters no verdict.
+
+    Attributes
+    ----------
+    node : int
+        Index of the point.
+    condition : str
+        ``"compatibility"``, ``"same-torsion"``, ``"torsion-change"``, ``"convex-neighbourhood"``,
+        ``"inflection-neighbourhood"``, ``"neighbourhood-torsion"`` or
+        ``"neighbourhood-coplanarity"``; see ``ShapeReport.nodes``.
+    satisfied : bool
+        Whether the curve meets it.
+    margin : float
+        Signed distance from failure, without unit.
+    location : float
+        Parameter at which the margin is smallest.
+
+    Examples
+    --------
+    >>> import shapespline as ss
+    >>> report = ss.NuSpline([[0, 0], [1, 1], [2, 0], [3, 1]]).check()
+    >>> [(record.node, record.condition, record.satisfied) for record in report.nodes]
+    [(1, 'compatibility', True), (2, 'compatibility', True)]
+    """
+    def __new__(
+        cls, node: int, condition: str, satisfied: bool, margin: float, location: float
+    ) -> Self: ...
+    @property
+    def node(self) -> int:
+        """Index of the point, from 0."""
+    @property
+    def condition(self) -> str:
+        """Name of the condition; see ``ShapeReport.nodes``."""
+    @property
+    def satisfied(self) -> bool:
+        """Whether the curve meets it."""
+    @property
+    def margin(self) -> float:
+        """Signed distance from failure, without unit."""
+    @property
+    def location(self) -> float:
+        """Parameter at which the margin is smallest."""
+    def __eq__(self, other: object, /) -> bool: ...
+    def __ne__(self, other: object, /) -> bool: ...
+    def __hash__(self) -> int: ...
+    def __reduce__(self) -> tuple[object, tuple[bytes]]: ...
+
+@final
+class OscillationRecord:
+    """How a segment moves about the plane of its four points: information, in no verdict.
+
+    Attributes
+    ----------
+    segment : int
+        Index of the segment, which requires coplanarity.
+    crossings : int
+        How often it crosses the plane between its points.
+    least : int
+        The least crossings that its end tangents allow: 0 or 1.
+    satisfied : bool
+        Whether there are no more than the least.
+    amplitude : float
+        Greatest distance from the plane over the length of the chord.
+    location : float
+        Parameter of that distance.
+
+    Examples
+    --------
+    >>> import shapespline as ss
+    >>> ss.OscillationRecord(0, 1, 1, True, 0.01, 0.5).crossings
+    1
+    """
+    def __new__(
+        cls,
+        segment: int,
+        crossings: int,
+        least: int,
+        satisfied: bool,
+        amplitude: float,
+        location: float,
+    ) -> Self: ...
+    @property
+    def segment(self) -> int:
+        """Index of the segment, which requires coplanarity."""
+    @property
+    def crossings(self) -> int:
+        """How often it crosses the plane between its points."""
+    @property
+    def least(self) -> int:
+        """The least crossings that its end tangents allow."""
+    @property
+    def satisfied(self) -> bool:
+        """Whether there are no more than the least."""
+    @property
+    def amplitude(self) -> float:
+        """Greatest distance from the plane over the length of the chord."""
+    @property
+    def location(self) -> float:
+        """Parameter of that distance."""
     def __eq__(self, other: object, /) -> bool: ...
     def __ne__(self, other: object, /) -> bool: ...
     def __hash__(self) -> int: ...

@@ -10,8 +10,7 @@ import numpy as np
 
 from shapespline import _core
 from shapespline._convert import piecewise
-from shapespline._core import MonotoneCubic
-from shapespline._errors import InputError
+from shapespline._core import InputError, MonotoneCubic
 from shapespline._kinds import KINDS, kind_of
 from shapespline._monotone_check import check, signs_of_data
 

@@ -8,8 +8,7 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
-from shapespline._core import MonotoneCubic, MonotoneQuartic, MonotoneQuintic
-from shapespline._errors import InputError
+from shapespline._core import InputError, MonotoneCubic, MonotoneQuartic, MonotoneQuintic
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

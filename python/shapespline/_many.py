@@ -8,8 +8,7 @@ from collections.abc import Sequence
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Literal, overload
 
-from shapespline._core import _fit_many
-from shapespline._errors import InputError
+from shapespline._core import InputError, _fit_many
 from shapespline._methods import METHODS, given_options, method_of
 from shapespline._pickling import sealed
 

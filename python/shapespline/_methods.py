@@ -8,8 +8,7 @@ from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
-from shapespline._core import CatmullRom, FairSpline, NuSpline, TensionSpline
-from shapespline._errors import InputError
+from shapespline._core import CatmullRom, FairSpline, InputError, NuSpline, TensionSpline
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from shapespline._errors import InputError
+from shapespline._core import InputError
 from shapespline._pickling import sealed
 
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ import pickle
 import zlib
 from typing import Any
 
-from shapespline._errors import InputError
+from shapespline._core import InputError
 
 __all__ = ["sealed"]
 

@@ -10,8 +10,7 @@ import numpy as np
 
 from shapespline import _core
 from shapespline._convert import _is_array, piecewise
-from shapespline._core import FairSpline, SpaceCurve, TensionSpline
-from shapespline._errors import InputError
+from shapespline._core import FairSpline, InputError, SpaceCurve, TensionSpline
 from shapespline._pickling import sealed
 
 if TYPE_CHECKING:

@@ -23,8 +23,7 @@ import numpy as np
 
 from shapespline._bspline import fair_knots, fewest_knots
 from shapespline._convert import piecewise
-from shapespline._core import FairSpline
-from shapespline._errors import InputError
+from shapespline._core import FairSpline, InputError
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

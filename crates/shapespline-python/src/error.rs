@@ -5,7 +5,13 @@
 
 use std::fmt;
 
-use pyo3::{PyErr, PyTypeInfo, prelude::*, types::PyTuple};
+use pyo3::{
+    PyErr,
+    call::PyCallArgs,
+    ffi::c_str,
+    prelude::*,
+    types::{PyDict, PyTuple},
+};
 use shapespline::{
     criteria::CurveError,
     geometry::{Coordinates, InputError},
@@ -13,10 +19,25 @@ use shapespline::{
     nu::FitError,
 };
 
-pyo3::import_exception!(shapespline._errors, ConvergenceError);
+use crate::own;
 
-mod python {
-    pyo3::import_exception!(shapespline._errors, InputError);
+/// Adds the exceptions to the module.
+pub(crate) fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    let names = PyDict::new(module.py());
+    names.set_item("__name__", "shapespline")?;
+    module.py().run(c_str!(include_str!("exceptions.py")), Some(&names), None)?;
+    for name in ["InputError", "ConvergenceError"] {
+        module.add(name, names.as_any().get_item(name)?)?;
+    }
+    Ok(())
+}
+
+/// An exception of a class of the module, made of its arguments.
+fn raised<'py>(py: Python<'py>, class: &str, arguments: impl PyCallArgs<'py>) -> PyErr {
+    match own(py, class).and_then(|class| class.call1(arguments)) {
+        Ok(exception) => PyErr::from_value(exception),
+        Err(error) => error,
+    }
 }
 
 /// The value that is refused.
@@ -140,7 +161,7 @@ pub(crate) fn invalid(
     text: impl Into<String>,
 ) -> PyErr {
     let index = Index(index.to_vec());
-    PyErr::new::<python::InputError, _>((text.into(), argument.to_owned(), index, value.into()))
+    Python::attach(|py| raised(py, "InputError", (text.into(), argument, index, value.into())))
 }
 
 /// Unusable input: `ARGUMENT[INDEX] must RULE, got VALUE`.
@@ -325,8 +346,5 @@ pub(crate) fn convergence_error(
     curve: Py<PyAny>,
     report: Py<PyAny>,
 ) -> PyErr {
-    match ConvergenceError::type_object(py).call1((message, curve, report)) {
-        Ok(exception) => PyErr::from_value(exception),
-        Err(error) => error,
-    }
+    raised(py, "ConvergenceError", (message, curve, report))
 }

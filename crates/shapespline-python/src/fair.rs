@@ -2,15 +2,11 @@
 
 //! `FairSpline`: what is particular to fair curves.
 
-use pyo3::{
-    PyClassInitializer,
-    prelude::*,
-    types::{IntoPyDict, PyTuple},
-};
+use pyo3::{PyClassInitializer, prelude::*, types::PyTuple};
 use shapespline::{
     criteria::Criteria,
     fair::{self, Energy, FairOptions},
-    geometry::{Domain, Repeated},
+    geometry::Repeated,
 };
 
 use crate::{
@@ -207,34 +203,5 @@ impl FairSpline {
         let base = slf.as_super().get();
         let curve = base.curve.as_any().downcast_ref::<fair::FairSpline>();
         curve.map_or("", |curve| options::energy_name(curve.energy()))
-    }
-
-    /// Return the curve as a B-spline of SciPy.
-    ///
-    /// Returns
-    /// -------
-    /// scipy.interpolate.BSpline
-    ///     Cubic, with simple knots at the points and at the extra knots, and triple ones at corners.
-    ///     Knots and coefficients of a closed curve go around, and it extrapolates periodically.
-    ///
-    /// Raises
-    /// ------
-    /// ModuleNotFoundError
-    ///     If SciPy is not installed (``pip install "shapespline[scipy]"``).
-    ///
-    /// Examples
-    /// --------
-    /// >>> import shapespline as ss
-    /// >>> ss.FairSpline([[0, 0], [3, 4], [6, 8]]).to_bspline().t
-    /// array([ 0.,  0.,  0.,  0.,  5., 10., 10., 10., 10.])
-    fn to_bspline<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
-        let py = slf.py();
-        let class = py.import("scipy.interpolate")?.getattr("BSpline")?;
-        let spline = py.import("shapespline._bspline")?.call_method1("of_fair_spline", (slf,))?;
-        let options = match slf.as_super().get().curve.cubic().domain() {
-            Domain::Closed => [("extrapolate", "periodic")].into_py_dict(py)?,
-            Domain::Open => [("extrapolate", true)].into_py_dict(py)?,
-        };
-        class.call((spline.get_item(0)?, spline.get_item(1)?, 3), Some(&options))
     }
 }

@@ -3,13 +3,14 @@
 //! The Python face of shapespline: arrays in and out, options by name, errors to exceptions.
 //!
 //! No mathematics lives here. Every space curve is a `SpaceCurve`; a family adds its own
-//! constructors (`NuSpline`, `TensionSpline`, `CatmullRom`, `FairSpline`). The package `python/shapespline` around this module holds what
-//! is better written in Python: figures and the command line.
+//! constructors (`NuSpline`, `TensionSpline`, `CatmullRom`, `FairSpline`). The package
+//! `python/shapespline` around this module holds what is better written in Python, figures and the
+//! command line; nothing of it is imported here.
 
 // Doc comments on Python classes are numpydoc docstrings: `points[0]` in them is no link.
 #![allow(rustdoc::broken_intra_doc_links)]
 
-use pyo3::prelude::*;
+use pyo3::{exceptions::PyImportError, prelude::*, sync::PyOnceLock};
 
 mod asked;
 mod catmull_rom;
@@ -29,6 +30,7 @@ mod options;
 mod output;
 mod pickle;
 mod piecewise;
+mod record;
 mod report;
 mod shape;
 mod tangents;
@@ -42,9 +44,22 @@ mod work;
 #[global_allocator]
 static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
 
+/// The module itself: what it raises and what makes objects of pickles is found there, so that it
+/// imports nothing of the package around it.
+static MODULE: PyOnceLock<Py<PyModule>> = PyOnceLock::new();
+
+/// A member of the module by its name.
+fn own<'py>(py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
+    let module =
+        MODULE.get(py).ok_or_else(|| PyImportError::new_err("the module is incomplete"))?;
+    module.bind(py).getattr(name)
+}
+
 /// Compiled part of shapespline: the curves, their reports, and checks of any curve.
 #[pymodule(gil_used = false)]
 fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    MODULE.get_or_init(module.py(), || module.clone().unbind());
+    error::register(module)?;
     module.add_class::<curve::SpaceCurve>()?;
     module.add_class::<nu::NuSpline>()?;
     module.add_class::<tension::TensionSpline>()?;
@@ -57,6 +72,9 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<fairness::Fairness>()?;
     module.add_class::<report::ShapeReport>()?;
     module.add_class::<report::ShapeRecord>()?;
+    module.add_class::<report::UndecidedRecord>()?;
+    module.add_class::<report::NodeRecord>()?;
+    module.add_class::<report::OscillationRecord>()?;
     module.add_class::<diagnostics::Diagnostics>()?;
     module.add_class::<diagnostics::SearchStep>()?;
     module.add_function(wrap_pyfunction!(pickle::_from_bytes, module)?)?;

@@ -20,8 +20,9 @@ use crate::{
     monotone::{
         Fits, Layout, MonotoneDiagnostics, MonotoneSmoothing, PiecewisePolynomial, PiecewiseRows,
     },
+    own,
     piecewise::PiecewiseBezier,
-    report::{ShapeRecord, ShapeReport, Subject},
+    report::{NodeRecord, OscillationRecord, ShapeRecord, ShapeReport, Subject, UndecidedRecord},
     tangents::Tangents,
     work::without_gil,
 };
@@ -49,10 +50,13 @@ pub(crate) enum PickledKind {
     FairDiagnostics,
     FairStep,
     MonotoneSmoothing,
+    UndecidedRecord,
+    NodeRecord,
+    OscillationRecord,
 }
 
 impl PickledKind {
-    const ALL: [(Self, &'static str); 14] = [
+    const ALL: [(Self, &'static str); 17] = [
         (Self::Curve, "a curve"),
         (Self::Report, "a ShapeReport"),
         (Self::PiecewiseBezier, "a PiecewiseBezier"),
@@ -67,6 +71,9 @@ impl PickledKind {
         (Self::FairDiagnostics, "FairDiagnostics"),
         (Self::FairStep, "a FairStep"),
         (Self::MonotoneSmoothing, "a MonotoneSmoothing"),
+        (Self::UndecidedRecord, "an UndecidedRecord"),
+        (Self::NodeRecord, "a NodeRecord"),
+        (Self::OscillationRecord, "an OscillationRecord"),
     ];
 }
 
@@ -87,7 +94,7 @@ pub(crate) fn reduce<'py>(
     kind: PickledKind,
     write: impl FnOnce(Vec<u8>) -> Result<Vec<u8>, postcard::Error> + Send,
 ) -> PyResult<Reduced<'py>> {
-    let make = py.import("shapespline._core")?.getattr("_from_bytes")?;
+    let make = own(py, "_from_bytes")?;
     let sealed = || {
         let mut bytes = write(vec![kind as u8, VERSION])?;
         let checksum = crc32fast::hash(&bytes);
@@ -191,6 +198,9 @@ pub(crate) fn _from_bytes<'py>(py: Python<'py>, data: &[u8]) -> PyResult<Bound<'
         PickledKind::FairDiagnostics => whole::<FairDiagnostics>(bytes)?.into_bound_py_any(py),
         PickledKind::FairStep => whole::<FairStep>(bytes)?.into_bound_py_any(py),
         PickledKind::MonotoneSmoothing => whole::<MonotoneSmoothing>(bytes)?.into_bound_py_any(py),
+        PickledKind::UndecidedRecord => whole::<UndecidedRecord>(bytes)?.into_bound_py_any(py),
+        PickledKind::NodeRecord => whole::<NodeRecord>(bytes)?.into_bound_py_any(py),
+        PickledKind::OscillationRecord => whole::<OscillationRecord>(bytes)?.into_bound_py_any(py),
     }
 }
 

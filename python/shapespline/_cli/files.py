@@ -21,12 +21,12 @@ from shapespline._cli.text_io import FileError, shortened, text_of, write
 from shapespline._convert import piecewise
 from shapespline._core import (
     FairSpline,
+    InputError,
     MonotoneSpline,
     PiecewiseBezier,
     SpaceCurve,
     Tangents,
 )
-from shapespline._errors import InputError
 from shapespline._kinds import KINDS
 
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from shapespline._errors import InputError
+from shapespline._core import InputError
 from shapespline.plot._style import CURVE, DATA, axes_for
 
 if TYPE_CHECKING:

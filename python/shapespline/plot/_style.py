@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from shapespline._errors import InputError
+from shapespline._core import InputError
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! The report in other forms: plain data, a data frame, a figure, a table for notebooks.
+//! The report in other forms: plain data, a data frame, a table for notebooks.
 
 use pyo3::{
     intern,
     prelude::*,
-    types::{IntoPyDict, PyDict, PyList},
+    types::{PyDict, PyList},
 };
 use shapespline::criteria::Record;
 
@@ -120,43 +120,6 @@ impl ShapeReport {
         columns.set_item("margin", floats(|r| r.margin))?;
         columns.set_item("location", floats(|r| r.location))?;
         pandas.getattr("DataFrame")?.call1((columns,))
-    }
-
-    /// Draw which criterion each segment requires, where it is violated, and what stays open.
-    ///
-    /// Parameters
-    /// ----------
-    /// ax : matplotlib.axes.Axes, optional
-    ///     Where to draw; default a new figure.
-    ///
-    /// Returns
-    /// -------
-    /// matplotlib.axes.Axes
-    ///
-    /// Raises
-    /// ------
-    /// ModuleNotFoundError
-    ///     If Matplotlib is not installed (``pip install "shapespline[plot]"``).
-    ///
-    /// See Also
-    /// --------
-    /// shapespline.plot.criteria : the same as a function.
-    ///
-    /// Examples
-    /// --------
-    /// >>> import matplotlib
-    /// >>> matplotlib.use("Agg")
-    /// >>> import shapespline as ss
-    /// >>> ax = ss.NuSpline([[0, 0], [1, 1], [2, 0], [3, 1]]).check().plot()
-    #[pyo3(signature = (ax=None))]
-    fn plot<'py>(
-        slf: &Bound<'py, Self>,
-        ax: Option<Bound<'py, PyAny>>,
-    ) -> PyResult<Bound<'py, PyAny>> {
-        let py = slf.py();
-        let options = [("ax", ax)].into_py_dict(py)?;
-        let draw = py.import("shapespline.plot")?.getattr("criteria")?;
-        draw.call((slf,), Some(&options))
     }
 
     fn _repr_html_(&self) -> String {

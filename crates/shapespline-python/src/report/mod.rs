@@ -8,7 +8,6 @@
 use std::sync::OnceLock;
 
 use pyo3::{
-    call::PyCallArgs,
     exceptions::PyTypeError,
     prelude::*,
     types::{PyDict, PyTuple},
@@ -34,7 +33,7 @@ mod subject;
 
 use comparison::{Comparison, Cost};
 
-pub(crate) use record::ShapeRecord;
+pub(crate) use record::{NodeRecord, OscillationRecord, ShapeRecord, UndecidedRecord};
 pub(crate) use subject::Subject;
 
 /// Most segments of which a printed report measures the fairness: 130 µs each, twice, on a busy machine.
@@ -118,19 +117,6 @@ impl ShapeReport {
     }
 }
 
-/// Objects of a class of `shapespline._records`, one for each tuple of its fields.
-fn records<'py, T>(
-    py: Python<'py>,
-    class: &str,
-    parts: impl Iterator<Item = T>,
-) -> PyResult<Vec<Bound<'py, PyAny>>>
-where
-    T: PyCallArgs<'py>,
-{
-    let class = py.import("shapespline._records")?.getattr(class)?;
-    parts.map(|fields| class.call1(fields)).collect()
-}
-
 #[pymethods]
 impl ShapeReport {
     #[new]
@@ -186,10 +172,8 @@ impl ShapeReport {
     /// digits, can stay open; such a record is not counted as violated, and in ``segments`` it is not
     /// satisfied and has margin 0.
     #[getter]
-    fn undecided<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyAny>>> {
-        let open = self.report.undecided.iter();
-        let parts = open.map(|u| (u.segment, u.criterion.name(), (u.interval[0], u.interval[1])));
-        records(py, "UndecidedRecord", parts)
+    fn undecided(&self) -> Vec<UndecidedRecord> {
+        self.report.undecided.iter().map(UndecidedRecord::from).collect()
     }
 
     /// What the paper says of the nodes beyond the criteria, as information: a list of `NodeRecord`.
@@ -207,11 +191,8 @@ impl ShapeReport {
     /// None of them enters ``ok`` or ``counts``. Made anew at each access; cost O(N), much slower than
     /// the check.
     #[getter]
-    fn nodes<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyAny>>> {
-        let notes = self.node_conditions(py)?;
-        let parts = notes.nodes.iter();
-        let parts = parts.map(|r| (r.node, r.condition.name(), r.satisfied, r.margin, r.location));
-        records(py, "NodeRecord", parts)
+    fn nodes(&self, py: Python<'_>) -> PyResult<Vec<NodeRecord>> {
+        Ok(self.node_conditions(py)?.nodes.iter().map(NodeRecord::from).collect())
     }
 
     /// How the segments that require coplanarity move about their plane, as information: a list of
@@ -219,13 +200,8 @@ impl ShapeReport {
     ///
     /// Made anew at each access, as ``nodes``.
     #[getter]
-    fn oscillations<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyAny>>> {
-        let notes = self.node_conditions(py)?;
-        let parts = notes
-            .oscillations
-            .iter()
-            .map(|r| (r.segment, r.crossings, r.least, r.satisfied, r.amplitude, r.location));
-        records(py, "OscillationRecord", parts)
+    fn oscillations(&self, py: Python<'_>) -> PyResult<Vec<OscillationRecord>> {
+        Ok(self.node_conditions(py)?.oscillations.iter().map(OscillationRecord::from).collect())
     }
 
     /// The end conditions that the points were judged with: ``"zero-curvature"``, ``"periodic"``,

@@ -1,13 +1,9 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
 
-"""Exceptions of shapespline."""
+"""The exceptions of the compiled module, which compiles this text into itself.
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, Any
-
-if TYPE_CHECKING:
-    from shapespline._core import ShapeReport, SpaceCurve
+With the stable ABI of CPython before 3.12 no class of Rust can extend an exception.
+"""
 
 
 class InputError(ValueError):
@@ -32,17 +28,7 @@ class InputError(ValueError):
     points 2 nan
     """
 
-    argument: str
-    index: int | tuple[int, ...] | None
-    value: Any
-
-    def __init__(
-        self,
-        message: str,
-        argument: str = "",
-        index: int | tuple[int, ...] | None = None,
-        value: Any = None,
-    ) -> None:
+    def __init__(self, message, argument="", index=None, value=None):
         # Pickling makes the exception again from the message, and then sets the attributes.
         super().__init__(message)
         self.argument = argument
@@ -74,15 +60,12 @@ class ConvergenceError(RuntimeError):
     6 [0. 0. 0. 0. 0.]
     """
 
-    curve: SpaceCurve
-    report: ShapeReport
-
-    def __init__(self, message: str, curve: SpaceCurve, report: ShapeReport) -> None:
+    def __init__(self, message, curve, report):
         # All three are args, so that pickling makes the exception again from them.
         super().__init__(message, curve, report)
         self.curve = curve
         self.report = report
 
-    def __str__(self) -> str:
+    def __str__(self):
         """Return the message alone."""
         return str(self.args[0])
