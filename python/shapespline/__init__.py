@@ -26,6 +26,8 @@ from shapespline._core import (
     MonotoneDiagnostics,
     MonotoneQuartic,
     MonotoneQuintic,
+    MonotoneRecord,
+    MonotoneReport,
     MonotoneRows,
     MonotoneSmoothing,
     MonotoneSpline,
@@ -50,7 +52,6 @@ from shapespline._core import (
 )
 from shapespline._functions import check_monotone, fit_monotone, histospline
 from shapespline._many import Fits, fit_many
-from shapespline._monotone_check import MonotoneRecord, MonotoneReport
 from shapespline._polygon import PolygonShape, polygon_shape
 from shapespline._shape import InflectionCount, check_shape, fairness, inflection_count
 from shapespline._verbs import fit

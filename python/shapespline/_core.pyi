@@ -33,6 +33,8 @@ __all__ = [
     "MonotoneDiagnostics",
     "MonotoneQuartic",
     "MonotoneQuintic",
+    "MonotoneRecord",
+    "MonotoneReport",
     "MonotoneRows",
     "MonotoneSmoothing",
     "MonotoneSpline",
@@ -50,6 +52,7 @@ __all__ = [
     "TensionSpline",
     "UndecidedRecord",
     "__version__",
+    "_check_monotone",
     "_check_shape",
     "_curve_inflections",
     "_fit_many",
@@ -2274,6 +2277,15 @@ def _check_shape(
 ) -> ShapeReport:
     """Return the report on points and a curve through them."""
 
+def _check_monotone(
+    x: ArrayLike,
+    y: ArrayLike,
+    function: PiecewiseBezier,
+    convex: _Convex,
+    tolerance: float,
+) -> MonotoneReport:
+    """Return the report on data and the graph of a function."""
+
 def _curve_inflections(
     curve: PiecewiseBezier, direction: ArrayLike | None
 ) -> tuple[int, _Floats, bool]: ...
@@ -2912,6 +2924,77 @@ class MonotoneSmoothing:
         """Whether the optimum was reached."""
     def __eq__(self, other: object, /) -> bool: ...
     def __ne__(self, other: object, /) -> bool: ...
+
+@final
+class MonotoneRecord:
+    """A criterion on a segment.
+
+    ``margin`` is the least value there of f'/(Δy/Δx) (monotonicity), or of f'' in the direction
+    asked relative to the changes of the secants beside it (convexity), at ``location``; below 0
+    the criterion is violated. ``satisfied`` is None where rounding hides it.
+
+    Examples
+    --------
+    >>> import shapespline as ss
+    >>> report = ss.check_monotone([0, 1], [0, 2], ss.MonotoneCubic([0, 1], [0, 2]))
+    >>> report.segments[0].criterion, round(report.segments[0].margin, 12)
+    ('monotonicity', 1.0)
+    """
+    def __new__(
+        cls, segment: int, criterion: str, satisfied: bool | None, margin: float, location: float
+    ) -> Self: ...
+    @property
+    def segment(self) -> int:
+        """Index of the segment, from 0."""
+    @property
+    def criterion(self) -> Literal["monotonicity", "convexity"]:
+        """``"monotonicity"`` or ``"convexity"``."""
+    @property
+    def satisfied(self) -> bool | None:
+        """Whether the function meets it; None where rounding hides it."""
+    @property
+    def margin(self) -> float:
+        """Signed distance from failure, without unit."""
+    @property
+    def location(self) -> float:
+        """The x at which the margin is smallest."""
+    def __eq__(self, other: object, /) -> bool: ...
+    def __ne__(self, other: object, /) -> bool: ...
+    def __hash__(self) -> int: ...
+    def __reduce__(self) -> tuple[object, tuple[bytes]]: ...
+
+@final
+class MonotoneReport:
+    """Whether a function rises, falls and bends as its data do: what `check_monotone` gives.
+
+    ``print(report)`` lists the violations. Truth is refused: ask ``ok``.
+
+    Examples
+    --------
+    >>> import shapespline as ss
+    >>> print(ss.check_monotone([0, 1], [0, 2], ss.MonotoneCubic([0, 1], [0, 2])))
+    shape preserved on 1 segments
+    criterion         violated  applicable
+    monotonicity             0           1
+    """
+    @property
+    def ok(self) -> bool:
+        """Whether nothing is violated for certain."""
+    @property
+    def segments(self) -> list[MonotoneRecord]:
+        """A record of every segment and criterion that is asked of it."""
+    @property
+    def violations(self) -> list[MonotoneRecord]:
+        """The records of what is violated for certain."""
+    @property
+    def undecided(self) -> list[MonotoneRecord]:
+        """The records of what rounding hides."""
+    def counts(self) -> dict[str, tuple[int, int]]:
+        """Return on how many segments each criterion is violated, and on how many it is asked."""
+    def to_dict(self) -> dict[str, Any]:
+        """Return plain data in the form of ``ShapeReport.to_dict``."""
+    def __bool__(self) -> NoReturn: ...
+    def __reduce__(self) -> tuple[object, tuple[bytes]]: ...
 
 @final
 class MonotoneDiagnostics:

@@ -12,7 +12,6 @@ from shapespline import _core
 from shapespline._convert import piecewise
 from shapespline._core import InputError, MonotoneCubic
 from shapespline._kinds import KINDS, kind_of
-from shapespline._monotone_check import check, signs_of_data
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -20,13 +19,13 @@ if TYPE_CHECKING:
     from shapespline._core import (
         MonotoneQuartic,
         MonotoneQuintic,
+        MonotoneReport,
         MonotoneSpline,
         PiecewisePolynomial,
         _Convex,
         _Ends,
         _Extrapolate,
     )
-    from shapespline._monotone_check import MonotoneReport
 
 __all__ = ["check_monotone", "fit_monotone", "histospline"]
 
@@ -273,7 +272,8 @@ def check_monotone(
     Raises
     ------
     ValueError
-        If the function does not run through the data, or an argument holds unusable values.
+        If the function jumps or does not run through the data, or an argument holds unusable
+        values.
     TypeError
         If an argument is of a wrong kind.
 
@@ -293,20 +293,7 @@ def check_monotone(
     >>> ss.check_monotone(x, y, ss.MonotoneCubic(x, y)).ok
     True
     """
-    a, b = _core._floats("x", x), _core._floats("y", y)
-    if a.ndim != 1 or a.size < 2:
-        text = f"x must have one axis of at least 2 entries, got shape {a.shape}"
-        raise InputError(text, "x", value=a.shape)
-    if b.shape != a.shape:
-        text = f"y must have the shape of x, {a.shape}, got {b.shape}"
-        raise InputError(text, "y", value=b.shape)
-    _finite("x", a)
-    _finite("y", b)
-    _increasing("x", a)
-    if not tolerance >= 0:
-        text = f"tolerance must not be negative, got {tolerance!r}"
-        raise InputError(text, "tolerance", value=tolerance)
-    return check(a, b, piecewise(function), convex=_signs(convex, a, b), tolerance=tolerance)
+    return _core._check_monotone(x, y, piecewise(function), convex, tolerance)
 
 
 def _finite(argument: str, values: Any) -> None:
@@ -321,22 +308,3 @@ def _increasing(argument: str, values: Any) -> None:
             f"{argument}[{i + 1}] must exceed its predecessor {values[i]:g}, got {values[i + 1]:g}"
         )
         raise InputError(text, argument, i + 1, float(values[i + 1]))
-
-
-def _signs(convex: Any, x: Any, y: Any) -> Any:
-    """Return the signs that are asked of the segments, None where none are."""
-    if convex is None:
-        return None
-    if isinstance(convex, str):
-        if convex != "data":
-            text = f"convex must be None, 'data' or an array of signs, got {convex!r}"
-            raise InputError(text, "convex", value=convex)
-        return signs_of_data(x, y)
-    signs = _core._floats("convex", convex)
-    if signs.shape != (len(x) - 1,):
-        text = f"convex must have one sign per segment, {len(x) - 1}, got shape {signs.shape}"
-        raise InputError(text, "convex", value=signs.shape)
-    for i in np.flatnonzero(~np.isin(signs, (-1, 0, 1)))[:1].tolist():
-        text = f"convex[{i}] must be -1, 0 or 1, got {signs[i]:g}"
-        raise InputError(text, "convex", i, float(signs[i]))
-    return signs.astype(np.int64)

@@ -164,6 +164,36 @@ pub enum MonotoneError {
         /// What is allowed.
         expected: &'static str,
     },
+    /// A function that is not of the range of the data.
+    #[error(
+        "function must run from {first} to {last} as the data, got one that runs from {from} to {to}"
+    )]
+    Domain {
+        /// Where the function begins.
+        from: f64,
+        /// Where it ends.
+        to: f64,
+        /// Where the data begin.
+        first: f64,
+        /// Where they end.
+        last: f64,
+    },
+    /// A function that jumps.
+    #[error("function must be continuous, got one that jumps at x = {x}")]
+    Jump {
+        /// Where it jumps.
+        x: f64,
+    },
+    /// A function that misses the data.
+    #[error("function must pass through y[{index}], got one that is {distance:.3} away at x = {x}")]
+    NotThrough {
+        /// The entry.
+        index: usize,
+        /// Its abscissa.
+        x: f64,
+        /// How far the function is away there.
+        distance: f64,
+    },
     /// `inverse` of a function that is not strictly monotone.
     #[error("inverse needs strictly monotone data: y[{index}] = {value} breaks it")]
     NotInvertible {

@@ -45,6 +45,7 @@ pub mod bezier_like;
 mod box_qp_blocks;
 mod bspline;
 mod calculus;
+mod check;
 mod chunked;
 mod cubic;
 mod data;
@@ -83,6 +84,7 @@ struct ReadmeDoctests;
 
 pub use bezier_like::BezierLike;
 pub use bspline::BSpline;
+pub use check::{MonotoneRecord, MonotoneReport, check_monotone};
 pub use cubic::{Convexity, CubicOptions, Ends, MonotoneCubic, minimal_bending};
 pub use energy::Fairness;
 pub use error::MonotoneError;

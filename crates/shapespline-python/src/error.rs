@@ -278,6 +278,9 @@ impl From<&MonotoneError> for Refused {
             }
             MonotoneError::Residual { value, .. } => Self::new("residual", [], value),
             MonotoneError::Distinct { found } => Self::new("x", [], found),
+            MonotoneError::NotThrough { index, distance, .. } => Self::new("y", [index], distance),
+            MonotoneError::Jump { x } => Self::new("function", [], x),
+            MonotoneError::Domain { from, .. } => Self::new("function", [], from),
             MonotoneError::NotInvertible { index, value } => Self::new("y", [index], value),
             MonotoneError::InRow { row, ref source } => Self::from(&**source).within(row),
             MonotoneError::Offset { index, value, .. } => Self::new("offsets", [index], value),

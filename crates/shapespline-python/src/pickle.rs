@@ -18,7 +18,8 @@ use crate::{
     fair_diagnostics::{FairDiagnostics, FairStep},
     fairness::Fairness,
     monotone::{
-        Fits, Layout, MonotoneDiagnostics, MonotoneSmoothing, PiecewisePolynomial, PiecewiseRows,
+        Fits, Layout, MonotoneDiagnostics, MonotoneRecord, MonotoneReport, MonotoneSmoothing,
+        PiecewisePolynomial, PiecewiseRows,
     },
     own,
     piecewise::PiecewiseBezier,
@@ -53,10 +54,12 @@ pub(crate) enum PickledKind {
     UndecidedRecord,
     NodeRecord,
     OscillationRecord,
+    MonotoneRecord,
+    MonotoneReport,
 }
 
 impl PickledKind {
-    const ALL: [(Self, &'static str); 17] = [
+    const ALL: [(Self, &'static str); 19] = [
         (Self::Curve, "a curve"),
         (Self::Report, "a ShapeReport"),
         (Self::PiecewiseBezier, "a PiecewiseBezier"),
@@ -74,6 +77,8 @@ impl PickledKind {
         (Self::UndecidedRecord, "an UndecidedRecord"),
         (Self::NodeRecord, "a NodeRecord"),
         (Self::OscillationRecord, "an OscillationRecord"),
+        (Self::MonotoneRecord, "a MonotoneRecord"),
+        (Self::MonotoneReport, "a MonotoneReport"),
     ];
 }
 
@@ -201,6 +206,8 @@ pub(crate) fn _from_bytes<'py>(py: Python<'py>, data: &[u8]) -> PyResult<Bound<'
         PickledKind::UndecidedRecord => whole::<UndecidedRecord>(bytes)?.into_bound_py_any(py),
         PickledKind::NodeRecord => whole::<NodeRecord>(bytes)?.into_bound_py_any(py),
         PickledKind::OscillationRecord => whole::<OscillationRecord>(bytes)?.into_bound_py_any(py),
+        PickledKind::MonotoneRecord => whole::<MonotoneRecord>(bytes)?.into_bound_py_any(py),
+        PickledKind::MonotoneReport => whole::<MonotoneReport>(bytes)?.into_bound_py_any(py),
     }
 }
 

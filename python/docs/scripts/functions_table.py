@@ -133,9 +133,8 @@ def shape_row(name: str, maker: str, sets: list[tuple[Array, Array]]) -> list[st
     for x, y in sets:
         f = MAKERS[maker](x, y)
         energies.append(energy(f) / ss.minimal_bending(x, y))
-        convexity = ss.check_monotone(x, y, f, convex="data").convexity
-        broken += int(np.count_nonzero(convexity.violated))
-        asked += int(np.count_nonzero(convexity.asked))
+        counts = ss.check_monotone(x, y, f, convex="data").counts()["convexity"]
+        broken, asked = broken + counts[0], asked + counts[1]
         form = as_ppoly(f)
         beyond.append(overshoot(x, y, form))
         more += more_inflections(x, y, form)

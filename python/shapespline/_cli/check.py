@@ -33,8 +33,6 @@ from shapespline._cli.text_io import (
     refuse_overwriting,
     write,
 )
-from shapespline._monotone_check import check as check_function
-from shapespline._monotone_check import increasing
 
 if TYPE_CHECKING:
     import argparse
@@ -58,8 +56,9 @@ def _located(
     ):
         return UsageError(str(error))
     # What the curve's own file says comes first.
-    own = ["points", *(["parameters"] if curve.parameters is None and data.parameters is not None
-                       else [])]  # fmt: skip
+    own = ["points", "x", "y"]
+    if curve.parameters is None and data.parameters is not None:
+        own.append("parameters")
     if error.argument in own:
         return FileError(data.path, str(error), data.line(error.index))
     return FileError(curve.path, str(error))
@@ -95,8 +94,8 @@ def _run(options: argparse.Namespace) -> int:
         with progress(f"checking {len(data.points):,} points"):
             if monotone:
                 tolerance = 1e-9 if asked["tolerance"] is None else asked["tolerance"]
-                x, y = increasing(data.points)
-                report = check_function(x, y, curve.curve, tolerance=tolerance)
+                x, y = data.points.T
+                report = shapespline.check_monotone(x, y, curve.curve, tolerance=tolerance)
             else:
                 closed, repeated = _closing(options, curve, len(data.points))
                 report = _core._check_shape(

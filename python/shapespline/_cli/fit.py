@@ -19,6 +19,7 @@ from shapespline import (
     ConvergenceError,
     InputError,
     Tangents,
+    check_monotone,
     interchange,
 )
 from shapespline._cli.files import write_curve
@@ -33,10 +34,8 @@ from shapespline._cli.text_io import (
     refuse_overwriting,
     write,
 )
-from shapespline._convert import piecewise
 from shapespline._kinds import KINDS
 from shapespline._methods import METHODS, Method
-from shapespline._monotone_check import check as check_function
 
 if TYPE_CHECKING:
     import argparse
@@ -151,7 +150,7 @@ def _fit_function(name: str, data: Points, given: dict[str, Any]) -> _Fit:
     tolerance = given.pop("tolerance", 1e-9)
     function = KINDS[name].fit(*data.points.T, **given)
     x, y = data.points.T
-    report = check_function(x, y, piecewise(function), tolerance=tolerance)
+    report = check_monotone(x, y, function, tolerance=tolerance)
     return _Fit(function, report)
 
 

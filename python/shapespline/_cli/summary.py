@@ -73,7 +73,7 @@ def draw(fitted: Any, report: Any, path: Path, *, title: str, names: Sequence[st
             if named:
                 axes.set_ylabel(named[1])
                 figure.axes[-1].set_xlabel(named[0])
-            for i in np.flatnonzero(report.monotonicity.violated):
+            for i in [record.segment for record in report.violations]:
                 axes.axvspan(*fitted.x[i : i + 2], color=plot.WRONG, alpha=0.12, linewidth=0)
         dateless = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}}
         figure.savefig(path, dpi=150, metadata=dateless.get(path.suffix.lower()))

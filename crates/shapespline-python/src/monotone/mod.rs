@@ -12,6 +12,7 @@ use crate::curve::document_call;
 
 mod bezier_like;
 mod calculus;
+mod check;
 mod cubic;
 mod diagnostics;
 mod export;
@@ -27,6 +28,7 @@ mod rows;
 mod smooth;
 mod spline;
 
+pub(crate) use check::{MonotoneRecord, MonotoneReport};
 pub(crate) use diagnostics::MonotoneDiagnostics;
 pub(crate) use fits::Fits;
 pub(crate) use function::PiecewisePolynomial;
@@ -45,6 +47,9 @@ pub(crate) fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<smooth::MonotoneSmoothing>()?;
     module.add_class::<rows::PiecewiseRows>()?;
     module.add_class::<rows::MonotoneRows>()?;
+    module.add_class::<check::MonotoneRecord>()?;
+    module.add_class::<check::MonotoneReport>()?;
+    module.add_function(wrap_pyfunction!(check::_check_monotone, module)?)?;
     module.add_function(wrap_pyfunction!(cubic::minimal_bending, module)?)?;
     module.add_function(wrap_pyfunction!(smooth::smooth_monotone, module)?)?;
     module.add_function(wrap_pyfunction!(many::fit_many_monotone, module)?)?;
