@@ -4,8 +4,9 @@
 //! the plane normal) and collinearity (`γ'` around the line).
 
 use glam::DVec3;
-use shapespline_geometry::bernstein::{
-    Positivity, multiply_quadratics, positivity, quadratic_is_positive,
+use shapespline_polynomial::{
+    Sign,
+    quadratic::{is_positive, multiply},
 };
 
 use crate::rounding::{Lean, UNIT, sum};
@@ -25,10 +26,10 @@ fn quartic(v: Quadratic, n: DVec3, epsilon: f64) -> [f64; 5] {
     let across = v.map(|x| x.cross(n));
     let square = |coordinate: fn(DVec3) -> f64, v: Quadratic| {
         let c = v.map(coordinate);
-        multiply_quadratics(c, c)
+        multiply(c, c)
     };
     let along = v.map(|x| x.dot(n));
-    let along = multiply_quadratics(along, along);
+    let along = multiply(along, along);
     let (x, y, z) = (square(|v| v.x, across), square(|v| v.y, across), square(|v| v.z, across));
     // ε²‖v‖² − ‖v×n‖² = ε²(v·n)² − (1−ε²)‖v×n‖²: no difference of nearly equal squares.
     let (inside, outside) = (epsilon * epsilon, (1.0 - epsilon) * (1.0 + epsilon));
@@ -92,7 +93,7 @@ impl Field {
         let has_side = |side: f64| {
             let [alpha, middle, beta] = [0, 1, 2]
                 .map(|k| side * along[k] + lean.sign() * (off[k] + 8.0 * UNIT * along[k].abs()));
-            quadratic_is_positive(alpha, 2.0 * middle, beta)
+            is_positive(alpha, 2.0 * middle, beta)
         };
         if !(has_side(1.0) || has_side(-1.0)) {
             return false;
@@ -101,13 +102,13 @@ impl Field {
         // of what they take the mean of.
         let sizes = [0, 1, 2].map(|k| sum(self.v[k]) + off[k]);
         let errors = [0, 1, 2].map(|k| off[k] + 128.0 * UNIT * sizes[k]);
-        let errors = multiply_quadratics(sizes, errors);
+        let errors = multiply(sizes, errors);
         let depth = quartic(self.v, axis.direction, epsilon);
         let depth: [f64; 5] = std::array::from_fn(|i| depth[i] + lean.sign() * (2.0 * errors[i]));
-        match positivity(depth) {
-            Positivity::Positive => true,
-            Positivity::Fails { .. } => false,
-            Positivity::Undecided { .. } => lean == Lean::For,
+        match Sign::of(&depth) {
+            Sign::Positive => true,
+            Sign::Fails { .. } => false,
+            Sign::Undecided { .. } => lean == Lean::For,
         }
     }
 }
@@ -116,13 +117,13 @@ impl Field {
 ///
 /// Inside the cone `v·n` has one sign, and that is asked first: where a planar curve inflects, the
 /// quartic has a double root, which rounding can hide, but `v·n` a simple one, which it cannot.
-pub(crate) fn inside(v: Quadratic, n: DVec3, epsilon: f64) -> Positivity {
+pub(crate) fn inside(v: Quadratic, n: DVec3, epsilon: f64) -> Sign {
     let [alpha, middle, beta] = v.map(|x| x.dot(n));
     let sign = alpha.signum();
-    if !quadratic_is_positive(sign * alpha, 2.0 * sign * middle, sign * beta) {
-        return Positivity::Fails { at: axis_crossing(alpha, middle, beta) };
+    if !is_positive(sign * alpha, 2.0 * sign * middle, sign * beta) {
+        return Sign::Fails { at: axis_crossing(alpha, middle, beta) };
     }
-    positivity(quartic(v, n, epsilon))
+    Sign::of(&quartic(v, n, epsilon))
 }
 
 /// Where `v·n`, a quadratic with Bernstein coefficients `[α, m, β]`, first vanishes on `[0, 1]`.
@@ -191,7 +192,7 @@ mod tests {
             // v·z changes sign at the root and v stays on the axis: the quartic has a double root.
             let v = [1.0, 1.0 - 0.5 / root, 1.0 - 1.0 / root].map(|z| DVec3::new(0.0, 0.0, z));
             match inside(v, DVec3::Z, 0.2) {
-                Positivity::Fails { at } => assert!((at - root).abs() < 1e-12, "{root} {at}"),
+                Sign::Fails { at } => assert!((at - root).abs() < 1e-12, "{root} {at}"),
                 other => panic!("{root}: {other:?}"),
             }
         }

@@ -19,7 +19,7 @@
 //! wherever the legs `a, c` do not vanish.
 
 use glam::DVec3;
-use shapespline_geometry::bernstein::{Positivity, quadratic_minimum};
+use shapespline_polynomial::quadratic::minimum;
 
 use crate::{
     Requirements,
@@ -62,10 +62,8 @@ pub(crate) fn convexity(s: &SegmentGeometry) -> Margin {
         // With an end below zero there is no middle condition.
         let geometric = alpha.max(0.0).sqrt() * beta.max(0.0).sqrt();
         let size = 2.0 * first.sqrt() * last.sqrt() + middle;
-        let between = Margin {
-            value: ratio(2.0 * geometric + gamma, size),
-            at: quadratic_minimum(alpha, gamma, beta),
-        };
+        let between =
+            Margin { value: ratio(2.0 * geometric + gamma, size), at: minimum(alpha, gamma, beta) };
         start.least(end).least(between)
     };
     of(s.p).least(of(s.q))
@@ -148,9 +146,9 @@ fn cone_margin(epsilon: f64, axis: DVec3, (from, to): (f64, f64), v: Quadratic) 
     let mut at = from;
     for _ in 0..52 {
         let middle = 0.5 * (inside + outside);
-        match verdict(middle) {
-            Positivity::Positive => outside = middle,
-            Positivity::Fails { at: t } | Positivity::Undecided { at: t } => {
+        match verdict(middle).place() {
+            None => outside = middle,
+            Some(t) => {
                 inside = middle;
                 at = from + t * (to - from);
             }

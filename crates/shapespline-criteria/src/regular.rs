@@ -16,7 +16,10 @@
 //! all the others, since on short intervals the legs of a hodograph that does not vanish are alike.
 
 use glam::DVec3;
-use shapespline_geometry::polynomial::{Polynomial, split};
+use shapespline_polynomial::{
+    Polynomial,
+    bernstein::{split, value},
+};
 
 use crate::{Requirements, margin::Margin, violations::SegmentGeometry};
 
@@ -116,14 +119,14 @@ impl Hodograph {
     }
 
     fn halves(&self) -> [Self; 2] {
-        let (legs, sizes) = (split(&self.legs, 0.5), split(&self.sizes, 0.5));
+        let (legs, sizes) = (split(self.legs.clone(), 0.5), split(self.sizes.clone(), 0.5));
         [Self { legs: legs.0, sizes: sizes.0 }, Self { legs: legs.1, sizes: sizes.1 }]
     }
 
     /// The least `ρ`: by search in 64 parts, then around the least of them.
     fn least(&self) -> Margin {
         let at = |t: f64| {
-            let (leg, size) = (split(&self.legs, t).1[0], split(&self.sizes, t).1[0]);
+            let (leg, size) = (value(&self.legs, t), value(&self.sizes, t));
             Margin { value: (leg.length() / size).min(1.0), at: t }
         };
         let around = |from: f64, to: f64| {

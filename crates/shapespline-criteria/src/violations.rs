@@ -3,7 +3,8 @@
 //! The verdict on one segment: which of the exact conditions fail.
 
 use glam::DVec3;
-use shapespline_geometry::{DataPolygon, bernstein::quadratic_is_positive, normalized_scale};
+use shapespline_geometry::{DataPolygon, normalized_scale};
+use shapespline_polynomial::quadratic;
 
 use crate::{
     Criterion, Requirements, Tolerances,
@@ -304,7 +305,7 @@ pub(crate) fn violations(
 #[inline(always)]
 pub(crate) fn is_positive([alpha, gamma, beta]: [Rounded; 3], lean: Lean) -> bool {
     let root = Rounded { error: gamma.error + 8.0 * UNIT * gamma.value.abs(), ..gamma };
-    quadratic_is_positive(alpha.toward(lean), root.toward(lean), beta.toward(lean))
+    quadratic::is_positive(alpha.toward(lean), root.toward(lean), beta.toward(lean))
 }
 
 /// The violations of convexity, inflection, turning and torsion, and of a curve that stops.

@@ -35,7 +35,6 @@
 //! ```
 
 mod arc_length;
-pub mod bernstein;
 mod boundary;
 mod bspline;
 mod curve;
@@ -49,7 +48,6 @@ mod parametrization;
 mod piecewise;
 mod piecewise_bezier;
 mod polygon;
-pub mod polynomial;
 mod quadrature;
 mod ragged;
 mod reparametrization;
@@ -78,6 +76,8 @@ pub use reparametrization::MonotoneCubic;
 pub use reparametrized::ReparametrizedCubic;
 pub use segment::CubicSegment;
 pub use segment_batch::{SegmentBatch, VectorLanes};
+/// Bernstein polynomials and what proves their signs.
+pub use shapespline_polynomial as polynomial;
 pub use vector::{length, normalize, normalized_scale};
 
 /// The examples of the README are run as tests.

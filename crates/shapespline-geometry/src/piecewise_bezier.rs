@@ -4,13 +4,11 @@
 //! not made here are taken in.
 
 use glam::{DVec3, DVec4};
+use shapespline_polynomial::bernstein::{binomials, split, value};
 
 use crate::{
-    Dimension, InputError, PiecewiseCubic,
-    bspline::bezier_of_bspline,
-    parametrization::check_increasing,
-    polynomial::{binomials, split},
-    vector::power_of_two,
+    Dimension, InputError, PiecewiseCubic, bspline::bezier_of_bspline,
+    parametrization::check_increasing, vector::power_of_two,
 };
 
 /// Bézier pieces of one degree between increasing breaks, held in homogeneous coordinates
@@ -240,7 +238,7 @@ impl PiecewiseBezier {
         let last = self.pieces() - 1;
         let i = self.breaks.partition_point(|&b| b <= u).saturating_sub(1).min(last);
         let t = (u - self.breaks[i]) / (self.breaks[i + 1] - self.breaks[i]);
-        let p = split(self.piece(i), t).1[0];
+        let p = value(self.piece(i), t);
         p.truncate() / p.w
     }
 
@@ -261,11 +259,11 @@ impl PiecewiseBezier {
             let (begins, ends) = (start < from - snap, end > to + snap);
             // The later cut first: its parameter is that of the whole piece.
             if ends {
-                control = split(&control, (to - start) / (end - start)).0;
+                control = split(control, (to - start) / (end - start)).0;
             }
             if begins {
                 let end = if ends { to } else { end };
-                control = split(&control, (from - start) / (end - start)).1;
+                control = split(control, (from - start) / (end - start)).1;
             }
             let local = |u: f64| (u - from) / (to - from);
             parts.push(BezierPart {

@@ -2,9 +2,9 @@
 
 //! The polynomial with which a function continues beyond an end knot.
 
-use crate::bernstein;
 use crate::extrapolation::Continuation;
 use crate::roots::{horner, outward_roots, verified};
+use shapespline_polynomial::bernstein;
 
 /// `Σ aₖ τᵏ`, where τ ≥ 0 is the distance from the end knot divided by the length of the end segment. At x = ±∞ its value is
 /// the limit.

@@ -14,7 +14,7 @@
 //! sweeps a nested family: `∂Q/∂α = m₀u²t²`, `∂R/∂α = m₀u²t³` (9), `∂Q/∂β = −m₁u²t²`, `∂R/∂β = −m₁u³t²` (10).
 
 use crate::MonotoneError;
-use crate::bernstein;
+use shapespline_polynomial::bernstein;
 
 /// Which curve, with its parameters.
 #[derive(Debug, Clone, Copy, PartialEq)]

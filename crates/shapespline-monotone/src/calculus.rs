@@ -2,13 +2,13 @@
 
 //! Derivatives, integrals and solutions of the interpolants.
 
-use crate::bernstein;
 use crate::beyond::Beyond;
 use crate::data::{PowerOfTwo, exponent};
 use crate::extrapolation::{Continuation, Extrapolation};
 use crate::integrals::{Pieces, whole};
 use crate::piecewise::PiecewisePolynomial;
 use crate::spline::{MonotoneKind, MonotoneSpline};
+use shapespline_polynomial::{bernstein, quadratic};
 
 impl MonotoneSpline {
     /// Bernstein coefficients of the first derivative, scaled; its ends are the slopes to the last bit.
@@ -123,7 +123,7 @@ impl MonotoneSpline {
         let value = if nu == 1 && matches!(self.kind, MonotoneKind::Cubic { .. }) {
             // What rounding leaves of a slope of the wrong sign is none.
             let rises = self.y[i + 1] >= self.y[i];
-            let value = bernstein::quadratic([c[0], c[1], c[2]], t);
+            let value = quadratic::value([c[0], c[1], c[2]], t);
             if rises { value.max(0.0) } else { value.min(0.0) }
         } else {
             bernstein::value(&c[..=degree], t)

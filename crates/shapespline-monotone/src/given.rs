@@ -221,8 +221,9 @@ mod tests {
     use super::*;
     use crate::energy::{self, Fairness};
     use crate::optimal::{coefficients, fixed_by_data, optimise};
-    use crate::quartic_form::{basis, certified_nonnegative, dot};
     use crate::reference;
+    use shapespline_polynomial::certified_nonnegative;
+    use shapespline_polynomial::quartic::{basis, dot};
     use std::ops::ControlFlow;
 
     struct Lcg(u64);

@@ -39,7 +39,6 @@
 // Negated comparisons are meant: they catch NaN as well. Index loops follow the formulas, over several arrays at once.
 #![allow(clippy::neg_cmp_op_on_partial_ord, clippy::needless_range_loop)]
 
-mod bernstein;
 mod beyond;
 pub mod bezier_like;
 mod box_qp_blocks;
@@ -67,7 +66,6 @@ mod periodic;
 mod piecewise;
 mod program;
 mod quartic;
-mod quartic_form;
 mod quintic;
 #[cfg(test)]
 mod reference;

@@ -50,10 +50,11 @@ mod step;
 
 use crate::data::Data;
 use crate::energy::{Fairness, is_flat};
-use crate::quartic_form::{derivative, least};
+use crate::region::derivative;
 use crate::slopes::sign;
 pub(crate) use nodes::{Fixed, fixed_by_data};
 use nodes::{NodeSystem, largest, natural};
+use shapespline_polynomial::quartic::least;
 use std::cell::RefCell;
 use std::ops::Range;
 use step::Problem;

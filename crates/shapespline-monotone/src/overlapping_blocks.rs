@@ -13,7 +13,7 @@ use crate::data::Data;
 use crate::energy::{Fairness, is_flat};
 use crate::interrupt::GoOn;
 use crate::optimal::{self, Optimum, Prescribed, coefficients, fixed_by_data};
-use crate::quartic_form::certified_nonnegative;
+use shapespline_polynomial::certified_nonnegative;
 use shapespline_polynomial::parallel;
 use std::ops::Range;
 

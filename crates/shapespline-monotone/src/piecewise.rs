@@ -2,7 +2,6 @@
 
 //! Piecewise polynomials in Bernstein form: what derivatives and antiderivatives of the interpolants are.
 
-use crate::bernstein;
 use crate::beyond::Beyond;
 use crate::chunked::{self, TILE};
 use crate::extrapolation::{Continuation, Extrapolation};
@@ -10,6 +9,7 @@ use crate::integrals::{Lazy, Pieces, whole};
 use crate::locate::Locator;
 use crate::periodic;
 use crate::roots::{Bernstein, Merged, verified};
+use shapespline_polynomial::{bernstein, quadratic};
 
 /// Tiles that one thread works through at least.
 const TILES: usize = 128;
@@ -140,7 +140,7 @@ impl PiecewisePolynomial {
         }
         let t = (x - self.x[i]) / self.h(i);
         if let (0, &[a, b, c]) = (nu, self.piece(i)) {
-            return bernstein::quadratic([a, b, c], t);
+            return quadratic::value([a, b, c], t);
         }
         if nu == 0 {
             return bernstein::value(self.piece(i), t);
@@ -209,7 +209,7 @@ impl PiecewisePolynomial {
             }
             let local = |x: f64| ((x - self.x[i]) / self.h(i)).clamp(0.0, 1.0);
             let ends = [local(w[0]), if w[1] >= self.x[i + 1] { 1.0 } else { local(w[1]) }];
-            c.extend(bernstein::part(self.piece(i), ends));
+            c.extend(bernstein::part(self.piece(i).to_vec(), ends));
         }
         Self::new(knots.to_vec(), self.degree, c, self.extrapolate)
     }

@@ -12,9 +12,9 @@ use crate::interrupt::{GoOn, check_interrupt};
 use crate::optimal::{self, Optimum, coefficients};
 use crate::overlapping_blocks;
 use crate::program::admissible_slopes;
-use crate::quartic_form::certified_nonnegative;
 use crate::slopes;
 use crate::spline::{MonotoneKind, MonotoneSpline};
+use shapespline_polynomial::certified_nonnegative;
 use std::ops::{ControlFlow, Deref};
 
 /// Nodal slopes.

@@ -6,11 +6,11 @@
 use crate::data::Data;
 use crate::energy::{Fairness, is_flat};
 use crate::optimal::parts::Quadratic;
-use crate::quartic_form::{basis, dot, minima};
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{
     DefaultSettingsBuilder, DefaultSolver, IPSolver, NonnegativeConeT, ZeroConeT,
 };
+use shapespline_polynomial::quartic::{basis, dot, minima};
 
 /// A matrix as triplets.
 pub(crate) fn csc(m: usize, n: usize, mut t: Vec<(usize, usize, f64)>) -> CscMatrix<f64> {

@@ -176,12 +176,19 @@ impl Region {
     }
 }
 
+/// Bernstein coefficients of the derivative of a quintic segment over Δ:
+/// `1+a₀, 1+a₀+b₀, …, 1+a₁−b₁, 1+a₁`, the middle one from the mean 1.
+#[inline]
+pub(crate) fn derivative(a0: f64, b0: f64, a1: f64, b1: f64) -> [f64; 5] {
+    [1.0 + a0, 1.0 + (a0 + b0), 1.0 - (2.0 * (a0 + a1) + (b0 - b1)), 1.0 + (a1 - b1), 1.0 + a1]
+}
+
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
-    use crate::quartic_form::{derivative, least};
     use crate::reference;
+    use shapespline_polynomial::quartic::least;
 
     struct Lcg(u64);
     impl Lcg {
@@ -262,9 +269,9 @@ mod tests {
             for (k, sign) in [(0, 1.0), (1, -1.0)] {
                 let mut positive = vec![(vec![(0, 1.0)], -ends[0]), (vec![(0, -1.0)], ends[1])];
                 for j in 1..400 {
-                    let w = crate::quartic_form::basis(f64::from(j) / 400.0);
+                    let w = shapespline_polynomial::quartic::basis(f64::from(j) / 400.0);
                     let at = |x: f64, y: f64| {
-                        crate::quartic_form::dot(
+                        shapespline_polynomial::quartic::dot(
                             &derivative(a - 1.0, 0.25 * x, b - 1.0, 0.25 * y),
                             &w,
                         )

@@ -6,7 +6,7 @@
 //! between them; stationary points are the roots of the derivative, found in the same way. A value below the rounding error
 //! counts as zero, and consecutive zeros (a double root, or roots that rounding cannot separate) count as one root.
 
-use crate::bernstein;
+use shapespline_polynomial::bernstein;
 
 /// Values up to this many ulp of the sum of the absolute terms, per coefficient, count as zero: the errors of de Casteljau's
 /// and of Horner's scheme are about one.
@@ -39,7 +39,7 @@ impl Bernstein {
     /// The polynomial with these coefficients, less v.
     pub(crate) fn less(c: &[f64], v: f64) -> Self {
         let size = c.iter().fold(v.abs(), |size, c| size.max(c.abs()));
-        let noise = ULPS * f64::EPSILON * size * c.len() as f64;
+        let noise = bernstein::rounding(c.len(), size);
         Self { c: c.iter().map(|c| c - v).collect(), noise }
     }
 

@@ -195,7 +195,7 @@ mod tests {
         let b = [2.0, 2.0 + m[0] / 4.0, 3.5 + e / 4.0, 5.0 - m[1] / 4.0, 5.0];
         for k in 0..=20 {
             let t = f64::from(k) / 20.0;
-            let w = crate::quartic_form::basis(t);
+            let w = shapespline_polynomial::quartic::basis(t);
             let direct: f64 = b.iter().zip(w).map(|(b, w)| b * w).sum();
             assert!((r.raw(t) - direct).abs() < 1e-14);
         }

@@ -3,4 +3,13 @@
 #![doc = include_str!("../README.md")]
 #![forbid(unsafe_code)]
 
+pub mod bernstein;
 pub mod parallel;
+mod polynomial;
+pub mod quadratic;
+pub mod quartic;
+mod sign;
+
+pub use bernstein::Coefficient;
+pub use polynomial::Polynomial;
+pub use sign::{Sign, certified_nonnegative};

@@ -106,7 +106,7 @@ fn the_maximum_does_not_depend_on_the_pieces() {
         for i in 0..curve.pieces() {
             let p: Vec<DVec3> = curve.piece(i).iter().map(|p| p.truncate()).collect();
             let part = random.within(0.2, 0.8);
-            let (left, right) = shapespline::geometry::polynomial::split(&p, part);
+            let (left, right) = shapespline::polynomial::bernstein::split(p, part);
             cut.extend(left);
             cut.extend(right);
             cut_breaks.push(breaks[i] + part * (breaks[i + 1] - breaks[i]));

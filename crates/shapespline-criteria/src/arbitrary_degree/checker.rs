@@ -5,8 +5,8 @@
 use std::ops::ControlFlow;
 
 use glam::DVec3;
-use shapespline_geometry::{DataPolygon, InputError, PiecewiseBezier, length, polynomial::Sign};
-use shapespline_polynomial::parallel;
+use shapespline_geometry::{DataPolygon, InputError, PiecewiseBezier, length};
+use shapespline_polynomial::{Sign, parallel};
 
 use super::{
     Question, Segment,

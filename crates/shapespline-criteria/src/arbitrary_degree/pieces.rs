@@ -3,7 +3,8 @@
 //! Segments that consist of several pieces, without a curve around them.
 
 use glam::DVec3;
-use shapespline_geometry::{BezierPart, length, polynomial::Sign};
+use shapespline_geometry::{BezierPart, length};
+use shapespline_polynomial::Sign;
 
 use super::{Question, Segment, prove_sign};
 use crate::{
@@ -186,7 +187,8 @@ impl Checker<'_> {
 mod tests {
     #![allow(clippy::unwrap_used)]
     use glam::DVec4;
-    use shapespline_geometry::{Boundary, DataPolygon, Parametrization, polynomial::split};
+    use shapespline_geometry::{Boundary, DataPolygon, Parametrization};
+    use shapespline_polynomial::bernstein::split;
 
     use super::*;
     use crate::{Criteria, Tolerances};
@@ -194,8 +196,8 @@ mod tests {
     /// A cubic in three pieces, of which the inner joints are moved, along with the points beside them.
     fn parts(control: [DVec3; 4], moves: [DVec3; 2]) -> Vec<BezierPart> {
         let whole: Vec<DVec4> = control.iter().map(|p| p.extend(1.0)).collect();
-        let (first, rest) = split(&whole, 0.25);
-        let (middle, last) = split(&rest, 2.0 / 3.0);
+        let (first, rest) = split(whole, 0.25);
+        let (middle, last) = split(rest, 2.0 / 3.0);
         let [x, y] = moves.map(|v| v.extend(0.0));
         let shift = |mut c: Vec<DVec4>, from: [DVec4; 2]| {
             (c[0], c[1]) = (c[0] + from[0], c[1] + from[0]);

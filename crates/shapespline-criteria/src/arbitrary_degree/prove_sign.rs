@@ -3,7 +3,7 @@
 //! The verdicts on a segment of any degree.
 
 use glam::DVec3;
-use shapespline_geometry::polynomial::{Polynomial, Sign};
+use shapespline_polynomial::{Polynomial, Sign};
 
 use super::{Piece, Segment, single_sign_change::has_single_sign_change, turning::turns_at_nodes};
 use crate::{

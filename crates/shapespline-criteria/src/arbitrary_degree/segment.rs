@@ -3,7 +3,8 @@
 //! The curve between two data points as polynomials.
 
 use glam::{DVec3, DVec4};
-use shapespline_geometry::{BezierPart, polynomial::Polynomial};
+use shapespline_geometry::BezierPart;
+use shapespline_polynomial::Polynomial;
 
 use crate::{Requirements, rounding::LEG_ERROR};
 
@@ -141,9 +142,7 @@ impl Segment {
     }
 }
 
-fn derivatives<T: shapespline_geometry::polynomial::Coefficient>(
-    p: Polynomial<T>,
-) -> [Polynomial<T>; 4] {
+fn derivatives<T: shapespline_polynomial::Coefficient>(p: Polynomial<T>) -> [Polynomial<T>; 4] {
     let first = p.derivative();
     let second = first.derivative();
     let third = second.derivative();

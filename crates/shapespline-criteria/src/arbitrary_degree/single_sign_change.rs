@@ -19,7 +19,7 @@
 use std::f64::consts::FRAC_PI_2;
 
 use glam::DVec3;
-use shapespline_geometry::polynomial::{Polynomial, Sign};
+use shapespline_polynomial::{Polynomial, Sign};
 
 use super::{
     Segment,

@@ -3,7 +3,7 @@
 //! Turning at the two nodes of a segment of any degree, on this segment's side of them.
 
 use glam::DVec3;
-use shapespline_geometry::polynomial::{Polynomial, Sign};
+use shapespline_polynomial::{Polynomial, Sign};
 
 use super::{Question, Segment, prove_sign::clear};
 use crate::{Requirements, margin::Margin};

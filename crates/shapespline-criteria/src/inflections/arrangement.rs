@@ -14,8 +14,7 @@
 use std::ops::ControlFlow;
 
 use glam::DVec3;
-use shapespline_geometry::bernstein::multiply_quadratics;
-use shapespline_polynomial::parallel;
+use shapespline_polynomial::{parallel, quadratic::multiply};
 
 use super::{
     roots::roots,
@@ -224,7 +223,7 @@ fn cross_arcs(arc: &Arc, other: &Arc, meet: &mut impl FnMut(f64, f64)) {
     if first * last < 0 || first * middle > 0 || middle * last > 0 {
         return;
     }
-    let (mm, ab) = (multiply_quadratics(m, m), multiply_quadratics(a, b));
+    let (mm, ab) = (multiply(m, m), multiply(a, b));
     let p: [f64; 5] = std::array::from_fn(|i| mm[i] - ab[i]);
     let size = |p: [f64; 3]| p.iter().fold(0.0f64, |m, x| m.max(x.abs()));
     let [a, m, b] = [a, m, b].map(size);

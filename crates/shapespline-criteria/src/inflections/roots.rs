@@ -2,6 +2,8 @@
 
 //! The real roots of low-degree polynomials in Bernstein form, none left out.
 
+use shapespline_polynomial::bernstein::{split, value_and_slope};
+
 /// Subdivision ends at intervals of `2^{−44}`: what is still open there is a root to rounding.
 const DEPTH: u32 = 44;
 
@@ -47,7 +49,7 @@ impl<F: FnMut(f64, f64)> Search<'_, F> {
             }
         } else {
             let middle = 0.5 * (from + to);
-            let (left, right) = halves(p);
+            let (left, right) = split(p, 0.5);
             self.isolate(left, [from, middle], depth - 1);
             self.isolate(right, [middle, to], depth - 1);
         }
@@ -109,27 +111,6 @@ fn bracketed<const N: usize>(p: [f64; N], error: f64) -> (f64, f64) {
         width *= 4.0;
     }
     (t, width)
-}
-
-fn value_and_slope<const N: usize>(mut c: [f64; N], t: f64) -> (f64, f64) {
-    for k in (2..N).rev() {
-        for i in 0..k {
-            c[i] += t * (c[i + 1] - c[i]);
-        }
-    }
-    let step = c[1] - c[0];
-    (c[0] + t * step, (N - 1) as f64 * step)
-}
-
-fn halves<const N: usize>(mut right: [f64; N]) -> ([f64; N], [f64; N]) {
-    let mut left = right;
-    for k in 1..N {
-        for i in 0..N - k {
-            right[i] = 0.5 * (right[i] + right[i + 1]);
-        }
-        left[k] = right[0];
-    }
-    (left, right)
 }
 
 #[cfg(test)]

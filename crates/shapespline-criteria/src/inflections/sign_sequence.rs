@@ -4,7 +4,7 @@
 //! the arcs between them.
 
 use glam::DVec3;
-use shapespline_geometry::polynomial::Polynomial;
+use shapespline_polynomial::Polynomial;
 
 use crate::arbitrary_degree::{Segment, corners};
 

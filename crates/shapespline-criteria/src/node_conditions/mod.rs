@@ -267,7 +267,7 @@ fn oscillation(checker: &Checker<'_>, i: usize, segment: &Segment) -> Oscillatio
     let (mut crossings, mut last) = (0, 0.0f64);
     for piece in &segment.pieces {
         let distance = piece.position().map(1.0, |a| a.dot(normal));
-        let distance = shapespline_geometry::polynomial::Polynomial::new(
+        let distance = shapespline_polynomial::Polynomial::new(
             distance.coefficients().to_vec(),
             distance.error().max(zero * chord),
         );

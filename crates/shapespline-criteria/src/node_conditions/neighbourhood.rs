@@ -4,7 +4,7 @@
 //! with the middle point left out.
 
 use glam::DVec3;
-use shapespline_geometry::polynomial::Sign;
+use shapespline_polynomial::Sign;
 
 use super::{Around, NodeCondition, NodeRecord};
 use crate::{

@@ -9,7 +9,7 @@
 
 use glam::DVec3;
 
-use crate::{fairness::piece::value, polynomial::Polynomial};
+use shapespline_polynomial::{Polynomial, bernstein::horner};
 
 /// Deepest subdivision.
 const DEPTH: u32 = 40;
@@ -164,6 +164,6 @@ fn root(p: &Polynomial<f64>) -> f64 {
         if !(from < middle && middle < to) || to - from < 1e-15 {
             return middle;
         }
-        if (value(p.coefficients(), middle) > 0.0) == rising { to = middle } else { from = middle }
+        if (horner(p.coefficients(), middle) > 0.0) == rising { to = middle } else { from = middle }
     }
 }

@@ -3,12 +3,9 @@
 //! What one Bézier piece contributes: exact extrema of its curvature, and its integrals.
 
 use glam::{DVec3, DVec4};
+use shapespline_polynomial::{Polynomial, bernstein::horner};
 
-use crate::{
-    fairness::extrema::Extrema,
-    polynomial::{Coefficient, Polynomial, Sign},
-    quadrature::integrate,
-};
+use crate::{fairness::extrema::Extrema, quadrature::integrate};
 
 /// Accuracy of the integrals, relative to the contribution of a part between extrema.
 const ACCURACY: f64 = 1e-11;
@@ -82,11 +79,7 @@ impl Piece {
 
     /// A parameter at which the speed is zero to rounding, if there is one.
     pub(crate) fn cusp(&self) -> Option<f64> {
-        match self.speed_squared().sign() {
-            Sign::Positive => None,
-            Sign::Fails { at } => Some(at),
-            Sign::Undecided { from, to } => Some(0.5 * (from + to)),
-        }
+        self.speed_squared().sign().place()
     }
 
     /// Where curvature turns from rising to falling or back.
@@ -99,7 +92,7 @@ impl Piece {
 
     /// Derivatives of order 1 to 3 with respect to `t`.
     fn at(&self, t: f64) -> [DVec3; 3] {
-        let [p, p1, p2, p3] = [0, 1, 2, 3].map(|k| value(self.derivatives[k].coefficients(), t));
+        let [p, p1, p2, p3] = [0, 1, 2, 3].map(|k| horner(self.derivatives[k].coefficients(), t));
         if self.weight.is_none() {
             return [p1, p2, p3].map(DVec4::truncate);
         }
@@ -158,17 +151,4 @@ impl Piece {
         });
         [length, bending, variation]
     }
-}
-
-/// The value of a polynomial in Bernstein form at `t ∈ [0, 1]`, by Horner's rule in `t` with the powers
-/// of `1 − t` taken along: no memory and O(degree), where de Casteljau's algorithm takes its square.
-pub(crate) fn value<T: Coefficient>(coefficients: &[T], t: f64) -> T {
-    let n = coefficients.len() - 1;
-    let (s, mut weight) = (1.0 - t, 1.0);
-    let mut sum = coefficients[0];
-    for (k, &c) in coefficients.iter().enumerate().skip(1) {
-        weight *= t * (n + 1 - k) as f64 / k as f64;
-        sum = sum * s + c * weight;
-    }
-    sum
 }

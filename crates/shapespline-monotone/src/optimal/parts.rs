@@ -4,8 +4,8 @@
 
 use crate::data::Data;
 use crate::energy::{Fairness, HESSIAN, is_flat, weight};
-use crate::quartic_form::basis;
 use crate::slopes::sign;
+use shapespline_polynomial::quartic::basis;
 
 /// The energy as ½vᵀPv + qᵀv (but for a constant) of v = (d₀, s₀, d₁, s₁, …), and what is asked of v.
 pub(crate) struct Quadratic {

@@ -7,7 +7,8 @@ use super::nodes::{self, Fixed, NodeSystem, fixed_by_data, gather, largest, loca
 use super::{Prescribed, coefficients};
 use crate::data::Data;
 use crate::energy::{Fairness, is_flat};
-use crate::quartic_form::{basis, certified_nonnegative, dot, lowest, without_zeros};
+use shapespline_polynomial::certified_nonnegative;
+use shapespline_polynomial::quartic::{basis, dot, lowest, without_zeros};
 
 /// Share of the way to the boundary that a step may go.
 const FRACTION: f64 = 0.98;

@@ -3,8 +3,8 @@
 //! Against Clarabel on finely divided segments.
 #![allow(clippy::unwrap_used)]
 use super::*;
-use crate::quartic_form::certified_nonnegative;
 use crate::{energy, reference};
+use shapespline_polynomial::certified_nonnegative;
 
 struct Lcg(u64);
 impl Lcg {

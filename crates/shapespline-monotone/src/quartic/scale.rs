@@ -97,7 +97,7 @@ impl Failing {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::quartic_form::least;
+    use shapespline_polynomial::quartic::least;
 
     /// The derivative (4) elevated to a quartic, so that the exact minimum of quartics can judge it.
     fn elevated(a: f64, d: f64, e: f64) -> [f64; 5] {

@@ -7,10 +7,7 @@ use shapespline::{
         box_qp::{self, TridiagonalBoxQp},
         solve_cyclic, solve_tridiagonal,
     },
-    geometry::{
-        bernstein::{Positivity, positivity},
-        polynomial::{Polynomial, Sign},
-    },
+    polynomial::{Polynomial, Sign},
 };
 
 use super::{Bytes, readable};
@@ -140,10 +137,10 @@ fn signs(bytes: &mut Bytes<'_>) {
     assert!(changes.windows(2).all(|w| w[0] != w[1]));
     if let Ok(four) = <[f64; 4]>::try_from(&coefficients[..4.min(n)]) {
         let p = Polynomial::new(four.to_vec(), 0.0);
-        match positivity(four) {
-            Positivity::Positive => assert!(!(p.value(t) < -error), "{four:?} at {t}"),
-            Positivity::Fails { at } => assert!(!(p.value(at) > error), "{four:?} at {at}"),
-            Positivity::Undecided { at } => assert!((0.0..=1.0).contains(&at)),
+        match Sign::of(&four) {
+            Sign::Positive => assert!(!(p.value(t) < -error), "{four:?} at {t}"),
+            Sign::Fails { at } => assert!(!(p.value(at) > error), "{four:?} at {at}"),
+            Sign::Undecided { from, to } => assert!(0.0 <= from && from <= to && to <= 1.0),
         }
     }
 }

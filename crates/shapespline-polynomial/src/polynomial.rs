@@ -7,35 +7,11 @@
 //! how far rounding can have moved a coefficient, so that a sign is called proved only where it
 //! exceeds the bound, and refuted likewise. What remains is left open, with its interval.
 
-use std::ops::{Add, Mul, Sub};
-
-use glam::{DVec3, DVec4};
-
-/// What a coefficient has to be able to do.
-pub trait Coefficient:
-    Copy + Default + Add<Output = Self> + Sub<Output = Self> + Mul<f64, Output = Self>
-{
-    /// Its size.
-    fn size(self) -> f64;
-}
-
-impl Coefficient for f64 {
-    fn size(self) -> f64 {
-        self.abs()
-    }
-}
-
-impl Coefficient for DVec3 {
-    fn size(self) -> f64 {
-        self.length()
-    }
-}
-
-impl Coefficient for DVec4 {
-    fn size(self) -> f64 {
-        self.length()
-    }
-}
+use crate::{
+    Sign,
+    bernstein::{self, Coefficient, binomials, split},
+    sign::DEPTH,
+};
 
 /// A polynomial on `[0, 1]` in Bernstein form.
 #[derive(Debug, Clone, PartialEq)]
@@ -44,53 +20,6 @@ pub struct Polynomial<T> {
     /// Bound of the rounding error of each coefficient.
     error: f64,
 }
-
-/// What is known of the sign of a polynomial on an interval.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Sign {
-    /// Greater than zero everywhere.
-    Positive,
-    /// Not greater than zero at a parameter.
-    Fails {
-        /// The parameter.
-        at: f64,
-    },
-    /// Positive outside of an interval, and zero to rounding somewhere in it.
-    Undecided {
-        /// Where the interval begins.
-        from: f64,
-        /// Where it ends.
-        to: f64,
-    },
-}
-
-impl Sign {
-    /// What is known when both have to be positive.
-    #[must_use]
-    pub fn and(self, other: Self) -> Self {
-        match (self, other) {
-            (Self::Fails { .. }, _) | (_, Self::Positive) => self,
-            (_, Self::Fails { .. }) | (Self::Positive, _) => other,
-            (Self::Undecided { from: a, to: b }, Self::Undecided { from: c, to: d }) => {
-                Self::Undecided { from: a.min(c), to: b.max(d) }
-            }
-        }
-    }
-
-    /// The same on an interval that was mapped to `[0, 1]`.
-    #[must_use]
-    pub fn on(self, from: f64, to: f64) -> Self {
-        let outer = |t: f64| from + t * (to - from);
-        match self {
-            Self::Positive => self,
-            Self::Fails { at } => Self::Fails { at: outer(at) },
-            Self::Undecided { from, to } => Self::Undecided { from: outer(from), to: outer(to) },
-        }
-    }
-}
-
-/// Deepest subdivision: an interval of `2^{−52}` is one rounding of its ends.
-const DEPTH: u32 = 52;
 
 impl<T: Coefficient> Polynomial<T> {
     /// The polynomial of coefficients that carry an error of at most `error` each; there is at least
@@ -137,8 +66,7 @@ impl<T: Coefficient> Polynomial<T> {
     #[must_use]
     pub fn derivative(&self) -> Self {
         let n = self.degree() as f64;
-        let c: Vec<T> = self.coefficients.windows(2).map(|w| (w[1] - w[0]) * n).collect();
-        let mut derivative = Self::new(c, 0.0);
+        let mut derivative = Self::new(bernstein::derivative(&self.coefficients), 0.0);
         derivative.error = n * 2.0 * self.error + 2.0 * f64::EPSILON * derivative.bound();
         derivative
     }
@@ -202,19 +130,13 @@ impl<T: Coefficient> Polynomial<T> {
     /// The value at `t`, by de Casteljau's algorithm.
     #[must_use]
     pub fn value(&self, t: f64) -> T {
-        split(&self.coefficients, t).1[0]
+        bernstein::value(&self.coefficients, t)
     }
 
     /// The polynomial on the part `[from, to]` of its interval.
     #[must_use]
     pub fn part(&self, from: f64, to: f64) -> Self {
-        let mut c = self.coefficients.clone();
-        if from > 0.0 {
-            c = split(&c, from).1;
-        }
-        if to < 1.0 {
-            c = split(&c, (to - from) / (1.0 - from)).0;
-        }
+        let c = bernstein::part(self.coefficients.clone(), [from, to]);
         let rounding = 2.0 * f64::EPSILON * self.degree() as f64 * self.bound();
         Self::new(c, self.error + rounding)
     }
@@ -222,7 +144,7 @@ impl<T: Coefficient> Polynomial<T> {
     /// The two halves.
     #[must_use]
     pub fn halves(&self) -> [Self; 2] {
-        let (left, right) = split(&self.coefficients, 0.5);
+        let (left, right) = split(self.coefficients.clone(), 0.5);
         // Halving adds no more than the subdivision's own rounding, which stays below the bound.
         [Self::new(left, self.error), Self::new(right, self.error)]
     }
@@ -240,7 +162,7 @@ impl Polynomial<f64> {
     /// A value that is exactly zero fails, one that is zero to rounding leaves the question open.
     #[must_use]
     pub fn sign(&self) -> Sign {
-        search(self, 0.0, 1.0, DEPTH)
+        Sign::with_error(&self.coefficients, self.error)
     }
 
     /// The strict sign changes on `[0, 1]`, as the signs that the polynomial takes in turn, and
@@ -250,28 +172,6 @@ impl Polynomial<f64> {
         let (mut signs, mut open) = (Vec::new(), false);
         collect(self, DEPTH, &mut signs, &mut open);
         (signs, open)
-    }
-}
-
-fn search(p: &Polynomial<f64>, from: f64, to: f64, depth: u32) -> Sign {
-    let ends = p.ends();
-    // Written so that a NaN fails.
-    for (value, at) in ends.into_iter().zip([from, to]) {
-        if !(value > -p.error) || value == 0.0 {
-            return Sign::Fails { at };
-        }
-    }
-    if p.is_clearly_positive() {
-        return Sign::Positive;
-    }
-    if depth == 0 || p.bound() <= p.error {
-        return Sign::Undecided { from, to };
-    }
-    let middle = 0.5 * (from + to);
-    let [left, right] = p.halves();
-    match search(&left, from, middle, depth - 1) {
-        fails @ Sign::Fails { .. } => fails,
-        known => known.and(search(&right, middle, to, depth - 1)),
     }
 }
 
@@ -301,30 +201,6 @@ fn collect(p: &Polynomial<f64>, depth: u32, signs: &mut Vec<bool>, open: &mut bo
     for half in p.halves() {
         collect(&half, depth - 1, signs, open);
     }
-}
-
-/// De Casteljau's subdivision at `t`: the coefficients on `[0, t]` and on `[t, 1]`.
-#[must_use]
-pub fn split<T: Coefficient>(coefficients: &[T], t: f64) -> (Vec<T>, Vec<T>) {
-    let mut right = coefficients.to_vec();
-    let mut left = right.clone();
-    for k in 1..right.len() {
-        for j in 0..right.len() - k {
-            right[j] = right[j] * (1.0 - t) + right[j + 1] * t;
-        }
-        left[k] = right[0];
-    }
-    (left, right)
-}
-
-/// The binomial coefficients of a row, as numbers (exact up to row 56).
-#[must_use]
-pub fn binomials(n: usize) -> Vec<f64> {
-    let mut row = vec![1.0; n + 1];
-    for k in 1..=n {
-        row[k] = (row[k - 1] * (n + 1 - k) as f64 / k as f64).round();
-    }
-    row
 }
 
 #[cfg(test)]
