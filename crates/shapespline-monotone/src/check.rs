@@ -8,9 +8,10 @@
 
 use std::ops::Range;
 
+use shapespline_polynomial::bernstein::{derivative, part, split, value};
+
 use crate::{
     Convexity, MonotoneError,
-    bernstein::{derivative, part},
     data::{Data, check_finite, parts},
 };
 
@@ -201,7 +202,7 @@ impl<'a> Function<'a> {
         }
         for (index, (&at, &y)) in x.iter().zip(self.y).enumerate() {
             let k = self.piece_at(at);
-            let value = crate::bernstein::value(self.piece(k), self.local(k, at));
+            let value = value(self.piece(k), self.local(k, at));
             let distance = (value - rise.scale(y)).abs();
             if !(distance <= apart) {
                 let distance = self.data.units().y().scale(distance);
@@ -226,7 +227,7 @@ impl<'a> Function<'a> {
 
     /// A part of a polynomial on a piece.
     fn cell(&self, k: usize, ends: [f64; 2], polynomial: &[f64], rounding: f64) -> Cell {
-        Cell { c: part(polynomial, ends.map(|x| self.local(k, x))), ends, rounding }
+        Cell { c: part(polynomial.to_vec(), ends.map(|x| self.local(k, x))), ends, rounding }
     }
 
     /// The width of a piece in scaled units.
@@ -290,8 +291,9 @@ impl Cell {
     fn halves(&self) -> [Self; 2] {
         let [start, end] = self.ends;
         let middle = f64::midpoint(start, end);
-        let half = |on, ends| Self { c: part(&self.c, on), ends, rounding: self.rounding };
-        [half([0.0, 0.5], [start, middle]), half([0.5, 1.0], [middle, end])]
+        let half = |c, ends| Self { c, ends, rounding: self.rounding };
+        let (left, right) = split(self.c.clone(), 0.5);
+        [half(left, [start, middle]), half(right, [middle, end])]
     }
 }
 
