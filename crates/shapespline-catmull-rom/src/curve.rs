@@ -5,7 +5,7 @@
 use std::ops::ControlFlow;
 
 use shapespline_criteria::{Criteria, ShapeReport, Tolerances};
-use shapespline_geometry::{Boundary, DVec3, DataPolygon, InputError, PiecewiseCubic};
+use shapespline_geometry::{DVec3, DataPolygon, InputError, PiecewiseCubic};
 use shapespline_polynomial::parallel;
 use shapespline_search::{
     Fit, FitError, Interpolant, Outcome, SearchOptions, Step, Tension, repeat_first_if_closed,
@@ -90,7 +90,12 @@ impl HandleOptions {
 pub struct CatmullRom {
     curve: PiecewiseCubic,
     tension: Vec<f64>,
-    boundary: Boundary,
+    /// Points and parameters are stored with the curve.
+    #[cfg_attr(
+        feature = "serde",
+        serde(rename = "boundary", serialize_with = "DataPolygon::serialize_boundary")
+    )]
+    polygon: DataPolygon,
     continuity: Continuity,
 }
 
@@ -101,7 +106,7 @@ pub struct CatmullRom {
 struct Stored {
     curve: PiecewiseCubic,
     tension: Vec<f64>,
-    boundary: Boundary,
+    boundary: shapespline_geometry::Boundary,
     continuity: Continuity,
 }
 
@@ -111,8 +116,8 @@ impl TryFrom<Stored> for CatmullRom {
 
     fn try_from(stored: Stored) -> Result<Self, InputError> {
         let Stored { curve, tension, boundary, continuity } = stored;
-        shapespline_search::check_stored(&tension, &curve)?;
-        Ok(Self { curve, tension, boundary, continuity })
+        let polygon = shapespline_search::polygon_of_stored(&curve, &tension, boundary)?;
+        Ok(Self { curve, tension, polygon, continuity })
     }
 }
 
@@ -201,14 +206,13 @@ impl CatmullRom {
         tension: Vec<f64>,
         continuity: Continuity,
     ) -> Result<Self, FitError> {
-        let boundary = polygon.boundary();
         let tension = repeat_first_if_closed(tension, polygon.is_closed());
         let curve = if checked {
-            PiecewiseCubic::through_checked(polygon, legs)
+            PiecewiseCubic::through_checked(&polygon, legs)
         } else {
-            PiecewiseCubic::through(polygon, legs)?
+            PiecewiseCubic::through(&polygon, legs)?
         };
-        Ok(Self { curve, tension, boundary, continuity })
+        Ok(Self { curve, tension, polygon, continuity })
     }
 }
 
@@ -240,7 +244,7 @@ impl Interpolant for CatmullRom {
         &self.tension
     }
 
-    fn boundary(&self) -> Boundary {
-        self.boundary
+    fn polygon(&self) -> &DataPolygon {
+        &self.polygon
     }
 }

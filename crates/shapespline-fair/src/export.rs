@@ -105,7 +105,7 @@ fn third_derivative_jumps(d: &Legs) -> [bool; 2] {
 /// The curve through the points of a polygon with the end legs of segments of one piece, and the others in
 /// several pieces; and the knots that are data points.
 pub(crate) fn assemble(
-    polygon: DataPolygon,
+    polygon: &DataPolygon,
     plain: Vec<[DVec3; 2]>,
     mut others: BTreeMap<usize, Pieces>,
 ) -> Result<(PiecewiseCubic, Vec<usize>), InputError> {

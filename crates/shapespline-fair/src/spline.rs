@@ -40,7 +40,12 @@ pub struct FairSpline {
     curve: PiecewiseCubic,
     /// The knots that are data points, ascending.
     nodes: Vec<usize>,
-    boundary: Boundary,
+    /// Points and parameters are stored with the curve.
+    #[cfg_attr(
+        feature = "serde",
+        serde(rename = "boundary", serialize_with = "DataPolygon::serialize_boundary")
+    )]
+    polygon: DataPolygon,
     energy: Energy,
     /// The points at which it has corners.
     corners: Vec<usize>,
@@ -91,7 +96,11 @@ impl TryFrom<Stored> for FairSpline {
                 return Err(InputError::OutOfRange { argument, index, value, allowed });
             }
         }
-        Ok(Self { curve, nodes, boundary, energy, corners, straight })
+        let points = nodes.iter().map(|&k| curve.points()[k]).collect();
+        let parameters = nodes.iter().map(|&k| curve.knots()[k]).collect();
+        let given = Parametrization::Given(parameters);
+        let polygon = DataPolygon::with_dimension(points, curve.dimension(), &given, boundary)?;
+        Ok(Self { curve, nodes, polygon, energy, corners, straight })
     }
 }
 
@@ -133,14 +142,13 @@ impl FairSpline {
         let ask = |step: &Step| monitor.lock().unwrap_or_else(PoisonError::into_inner)(step);
         let watch = Watch::new(&ask);
         let mut control = Control::new(options.max_iterations, &watch);
-        let (boundary, energy) = (polygon.boundary(), options.energy);
         let mut whole = Whole::of(&polygon);
         for part in constraints.parts(&polygon)? {
             whole.add(&part, options, &mut control)?;
         }
-        let (curve, nodes) = assemble(polygon, whole.legs, whole.others)?;
-        let corners = constraints.corners.clone();
-        let curve = Self { curve, nodes, boundary, energy, corners, straight };
+        let (curve, nodes) = assemble(&polygon, whole.legs, whole.others)?;
+        let (energy, corners) = (options.energy, constraints.corners.clone());
+        let curve = Self { curve, nodes, polygon, energy, corners, straight };
         let report = match whole.report {
             Some(report) => report,
             None => curve.check(options.criteria, options.tolerances)?,
@@ -182,7 +190,7 @@ impl FairSpline {
     /// The end conditions.
     #[must_use]
     pub fn boundary(&self) -> Boundary {
-        self.boundary
+        self.polygon.boundary()
     }
 
     /// What was minimised.
@@ -211,14 +219,14 @@ impl FairSpline {
 
     /// The data points.
     #[must_use]
-    pub fn points(&self) -> Vec<DVec3> {
-        self.nodes.iter().map(|&k| self.curve.points()[k]).collect()
+    pub fn points(&self) -> &[DVec3] {
+        self.polygon.points()
     }
 
     /// Their parameters.
     #[must_use]
-    pub fn parameters(&self) -> Vec<f64> {
-        self.nodes.iter().map(|&k| self.curve.knots()[k]).collect()
+    pub fn parameters(&self) -> &[f64] {
+        self.polygon.parameters()
     }
 
     /// The first derivatives at the data points.
@@ -229,17 +237,10 @@ impl FairSpline {
         self.nodes.iter().map(|&k| self.curve.evaluate(self.curve.knots()[k], 1, side(k))).collect()
     }
 
-    /// The data polygon.
-    ///
-    /// # Errors
-    /// None for a curve made by this crate.
-    pub fn polygon(&self) -> Result<DataPolygon, InputError> {
-        DataPolygon::with_dimension(
-            self.points(),
-            self.dimension(),
-            &Parametrization::Given(self.parameters()),
-            self.boundary,
-        )
+    /// The data: points, parameters and end conditions.
+    #[must_use]
+    pub fn polygon(&self) -> &DataPolygon {
+        &self.polygon
     }
 
     /// Checks the curve against its own data: every criterion on every piece, exactly. Cost O(N).
@@ -251,21 +252,20 @@ impl FairSpline {
         criteria: Criteria,
         tolerances: Tolerances,
     ) -> Result<ShapeReport, InputError> {
-        let polygon = self.polygon()?;
-        let tolerances = tolerances.validate()?;
+        let (polygon, tolerances) = (&self.polygon, tolerances.validate()?);
         let plain = self.corners.is_empty() && self.straight.is_empty();
         if plain && self.nodes.len() == self.curve.knots().len() {
             let legs = self.curve.legs();
-            return Ok(Checker::new(&polygon, criteria, tolerances).report(|i| legs[i]));
+            return Ok(Checker::new(polygon, criteria, tolerances).report(|i| legs[i]));
         }
         let curve = PiecewiseBezier::from(&self.curve);
-        match CurveChecker::new(&polygon, &curve, criteria, tolerances, INTERPOLATION) {
+        match CurveChecker::new(polygon, &curve, criteria, tolerances, INTERPOLATION) {
             Ok(checker) => Ok(checker
                 .with_free_nodes(&self.corners)
                 .with_straight_segments(&self.straight, &self.corners)
                 .report()),
             // The curve is made of the points that it is checked against.
-            Err(_) => Ok(Checker::new(&polygon, criteria, tolerances).report(|_| [DVec3::NAN; 2])),
+            Err(_) => Ok(Checker::new(polygon, criteria, tolerances).report(|_| [DVec3::NAN; 2])),
         }
     }
 }

@@ -29,7 +29,7 @@
 //!
 //! // Handles of a third of each chord: the polygon itself, as a curve.
 //! let legs = (0..polygon.segments()).map(|i| [polygon.chord(i) / 3.0; 2]).collect();
-//! let curve = PiecewiseCubic::through(polygon, legs)?;
+//! let curve = PiecewiseCubic::through(&polygon, legs)?;
 //! assert_eq!(curve.evaluate(0.5, 0, Side::Right), DVec3::new(0.5, 0.0, 0.0));
 //! # Ok::<(), shapespline_geometry::InputError>(())
 //! ```

@@ -4,13 +4,15 @@
 
 mod evaluate;
 
+use std::sync::Arc;
+
 use glam::DVec3;
 use once_cell::race::OnceBox;
 use shapespline_polynomial::parallel;
 
 use crate::{
-    CubicSegment, DataPolygon, Dimension, InputError, Locator, Side, error::check_room,
-    locate::search, parametrization::check_increasing,
+    Boundary, CubicSegment, DataPolygon, Dimension, InputError, Locator, Parametrization, Side,
+    error::check_room, locate::search, parametrization::check_increasing,
 };
 
 /// What a parameter outside the knots means.
@@ -32,8 +34,8 @@ pub enum Domain {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(try_from = "Stored"))]
 pub struct PiecewiseCubic {
-    knots: Vec<f64>,
-    points: Vec<DVec3>,
+    knots: Arc<Vec<f64>>,
+    points: Arc<Vec<DVec3>>,
     /// First and last leg of each segment, `a_i` and `c_i`.
     legs: Vec<[DVec3; 2]>,
     dimension: Dimension,
@@ -68,8 +70,8 @@ impl TryFrom<Stored> for PiecewiseCubic {
 impl Clone for PiecewiseCubic {
     fn clone(&self) -> Self {
         Self {
-            knots: self.knots.clone(),
-            points: self.points.clone(),
+            knots: Arc::clone(&self.knots),
+            points: Arc::clone(&self.points),
             legs: self.legs.clone(),
             dimension: self.dimension,
             domain: self.domain,
@@ -121,14 +123,15 @@ impl PiecewiseCubic {
         check_increasing("knots", &knots)?;
         check_room("points", &points)?;
         check_legs(&legs)?;
+        let (knots, points) = (Arc::new(knots), Arc::new(points));
         Ok(Self { knots, points, legs, dimension, domain, locator: OnceBox::new() })
     }
 
-    /// Curve through the points of a polygon, with the end legs of each segment.
+    /// Curve through the points of a polygon, which it shares, with the end legs of each segment.
     ///
     /// # Errors
     /// Not one pair of legs a segment; legs that are not finite.
-    pub fn through(polygon: DataPolygon, legs: Vec<[DVec3; 2]>) -> Result<Self, InputError> {
+    pub fn through(polygon: &DataPolygon, legs: Vec<[DVec3; 2]>) -> Result<Self, InputError> {
         check_legs(&legs)?;
         Ok(Self::through_checked(polygon, legs))
     }
@@ -136,11 +139,11 @@ impl PiecewiseCubic {
     /// [`Self::through`] for legs that [have room](crate::VectorLanes::have_room), as was found
     /// while they were made: long ones are not read from memory once more.
     #[must_use]
-    pub fn through_checked(polygon: DataPolygon, legs: Vec<[DVec3; 2]>) -> Self {
+    pub fn through_checked(polygon: &DataPolygon, legs: Vec<[DVec3; 2]>) -> Self {
         debug_assert!(check_legs(&legs).is_ok());
         let domain = if polygon.is_closed() { Domain::Closed } else { Domain::Open };
         let dimension = polygon.dimension();
-        let (points, knots) = polygon.into_points_and_parameters();
+        let (points, knots) = polygon.shared();
         Self { knots, points, legs, dimension, domain, locator: OnceBox::new() }
     }
 
@@ -160,6 +163,16 @@ impl PiecewiseCubic {
     #[must_use]
     pub fn legs(&self) -> &[[DVec3; 2]] {
         &self.legs
+    }
+
+    /// The polygon of its knots and points, with some end conditions, checked. Cost O(N).
+    ///
+    /// # Errors
+    /// Those of [`DataPolygon::new`]: neighbours that are equal, ends that the conditions do not suit.
+    pub fn polygon(&self, boundary: Boundary) -> Result<DataPolygon, InputError> {
+        let parametrization = Parametrization::Given(self.knots.to_vec());
+        let points = self.points.to_vec();
+        DataPolygon::with_dimension(points, self.dimension, &parametrization, boundary)
     }
 
     /// Number of segments.

@@ -2,7 +2,7 @@
 
 //! The data polygon: what the points themselves say about the shape of a curve through them.
 
-use std::ops::Range;
+use std::{ops::Range, sync::Arc};
 
 use glam::DVec3;
 use once_cell::race::OnceBox;
@@ -56,10 +56,12 @@ const BLOCK: usize = 8192;
 ///
 /// All shape quantities are made of *unit* chords `l_i = L_i/‖L_i‖`, so they do not depend on the
 /// scale of the data: `‖binormal(i)‖` is the sine of the turning angle at node `i`.
+///
+/// Points and parameters are shared: a curve through them keeps its polygon and no copies.
 #[derive(Debug, Clone)]
 pub struct DataPolygon {
-    points: Vec<DVec3>,
-    parameters: Vec<f64>,
+    points: Arc<Vec<DVec3>>,
+    parameters: Arc<Vec<f64>>,
     /// `l_{−1}, l_0, …, l_{N−1}, l_N`, made when shape is first asked for.
     directions: OnceBox<Vec<DVec3>>,
     boundary: Boundary,
@@ -121,6 +123,7 @@ impl DataPolygon {
         }
         let tangents = end_tangents(&points, &parameters, boundary, dimension)?;
         let directions = OnceBox::new();
+        let (points, parameters) = (Arc::new(points), Arc::new(parameters));
         Ok(Self { points, parameters, directions, boundary, tangents, dimension })
     }
 
@@ -313,10 +316,30 @@ impl DataPolygon {
         }
     }
 
-    /// Takes the polygon apart into points and parameters, which the curve keeps.
-    #[must_use]
-    pub fn into_points_and_parameters(self) -> (Vec<DVec3>, Vec<f64>) {
-        (self.points, self.parameters)
+    /// Stores the end conditions only, for curves that store points and parameters themselves.
+    ///
+    /// # Errors
+    /// Those of the serializer.
+    #[cfg(feature = "serde")]
+    pub fn serialize_boundary<S: serde::Serializer>(
+        &self,
+        serializer: S,
+    ) -> Result<S::Ok, S::Error> {
+        serde::Serialize::serialize(&self.boundary, serializer)
+    }
+
+    /// Points and parameters, shared with a curve through them.
+    pub(crate) fn shared(&self) -> (Arc<Vec<DVec3>>, Arc<Vec<f64>>) {
+        (Arc::clone(&self.points), Arc::clone(&self.parameters))
+    }
+}
+
+/// Equal in points, parameters and end conditions.
+impl PartialEq for DataPolygon {
+    fn eq(&self, other: &Self) -> bool {
+        (self.boundary, self.dimension) == (other.boundary, other.dimension)
+            && self.points == other.points
+            && self.parameters == other.parameters
     }
 }
 

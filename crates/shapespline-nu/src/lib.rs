@@ -8,7 +8,7 @@
 //! tensions `ν_i ≥ 0` are dimensionless; `ν = 0` gives the C² cubic spline, `ν → ∞` the polygon.
 //!
 //! **Guarantee.** For every `ν ≥ 0` the spline exists and is unique: its system is strictly diagonally
-//! dominant. [`NuSpline::shape_preserving`] returns with status `Solved` only a curve that was solved
+//! dominant. [`NuSpline::shape_preserving`](Spline::shape_preserving) returns with status `Solved` only a curve that was solved
 //! and checked completely, every criterion decided exactly.
 //!
 //! **Cost.** O(N) to build; the search costs one build and check, and then what its violations need.
@@ -47,9 +47,9 @@ pub use shapespline_search::criteria;
 /// Points, their parameters and ends, and the evaluation of curves.
 pub use shapespline_search::geometry;
 pub use shapespline_search::{
-    Fit, FitError, Interpolant, SearchOptions, Status, Strategy, Tension,
+    Fit, FitError, Interpolant, SearchOptions, Spline, Status, Strategy, Tension,
 };
-pub use spline::NuSpline;
+pub use spline::{Nu, NuSpline};
 
 /// The examples of the README are run as tests.
 #[cfg(doctest)]

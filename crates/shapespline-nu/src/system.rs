@@ -15,7 +15,7 @@ use shapespline_search::{TensionSystem, try_each_row};
 ///
 /// Off-diagonal entries sum to at most half the diagonal.
 #[derive(Debug)]
-pub(crate) struct NuSystem<'a> {
+pub struct NuSystem<'a> {
     pub(crate) polygon: &'a DataPolygon,
     /// One a distinct node.
     pub(crate) tension: Vec<f64>,

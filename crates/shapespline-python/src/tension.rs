@@ -10,6 +10,7 @@ use pyo3::{
 };
 use shapespline::{
     geometry::{self, InputError, InputMap, Repeated, Side},
+    search::Interpolant,
     tension::{self, Strategy, TangentScale},
 };
 
@@ -336,7 +337,7 @@ impl TensionSpline {
     ) -> (Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>) {
         let base = slf.as_super().get();
         let curve = base.curve.as_any().downcast_ref::<tension::TensionSpline>();
-        let pairs = curve.map_or(&[][..], tension::TensionSpline::tangent_scale);
+        let pairs = curve.map_or(&[][..], |spline| spline.curve().slopes());
         let pairs = base.curve.map.spread_segments(pairs, &[f64::NAN; 2]);
         let side = |k: usize| PyArray1::from_iter(slf.py(), pairs.iter().map(|pair| pair[k]));
         (side(0), side(1))

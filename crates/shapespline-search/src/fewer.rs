@@ -15,7 +15,7 @@ use crate::{Fit, FitError, Interpolant, SearchOptions, Status, Strategy};
 ///
 /// # Errors
 /// Those of `search`.
-pub fn or_of_all_criteria<C: Interpolant>(
+pub(crate) fn or_of_all_criteria<C: Interpolant>(
     fit: Fit<C>,
     options: &SearchOptions,
     search: impl FnOnce(DataPolygon, &SearchOptions) -> Result<Fit<C>, FitError>,
@@ -30,13 +30,13 @@ pub fn or_of_all_criteria<C: Interpolant>(
     {
         return Ok(fit);
     }
-    let polygon = fit.curve.polygon()?;
+    let polygon = fit.curve.polygon();
     let other = search(polygon.clone(), &SearchOptions { criteria, ..*options })?;
     if !is_solved(&other) || bending(&other) >= bending(&fit) {
         return Ok(fit);
     }
     let legs = other.curve.curve().cubic().legs();
-    let report = options.checker(&polygon)?.report(|i| legs[i]);
+    let report = options.checker(polygon)?.report(|i| legs[i]);
     let is_proved = report.ok() && report.undecided.is_empty();
     Ok(if is_proved { Fit { report, ..other } } else { fit })
 }

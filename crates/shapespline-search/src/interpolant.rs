@@ -3,9 +3,7 @@
 //! What the curves of all families have in common.
 
 use shapespline_criteria::{Checker, Criteria, ShapeReport, Tolerances};
-use shapespline_geometry::{
-    Boundary, Curve, DVec3, DataPolygon, InputError, Parametrization, Side,
-};
+use shapespline_geometry::{Boundary, Curve, DVec3, DataPolygon, InputError, Side};
 
 /// A curve through points, with a tension at each of them.
 pub trait Interpolant {
@@ -18,8 +16,13 @@ pub trait Interpolant {
     /// The tension at each point: 0 is none, and it grows.
     fn tension(&self) -> &[f64];
 
+    /// The data: points, parameters and end conditions.
+    fn polygon(&self) -> &DataPolygon;
+
     /// The end conditions.
-    fn boundary(&self) -> Boundary;
+    fn boundary(&self) -> Boundary {
+        self.polygon().boundary()
+    }
 
     /// The tangents at the points, derivatives with respect to the parameter (where the speed jumps,
     /// that of the segment after; at the end of the last segment its own).
@@ -32,28 +35,35 @@ pub trait Interpolant {
         (0..knots.len()).map(at).collect()
     }
 
-    /// The data polygon of the curve.
-    ///
-    /// # Errors
-    /// None for a curve made by this project.
-    fn polygon(&self) -> Result<DataPolygon, InputError> {
-        let cubic = self.curve().cubic();
-        DataPolygon::with_dimension(
-            cubic.points().to_vec(),
-            cubic.dimension(),
-            &Parametrization::Given(cubic.knots().to_vec()),
-            self.boundary(),
-        )
-    }
-
     /// Checks the curve against its own data. Cost O(N).
     ///
     /// # Errors
     /// Tolerances outside their range.
     fn check(&self, criteria: Criteria, tolerances: Tolerances) -> Result<ShapeReport, InputError> {
-        let polygon = self.polygon()?;
-        let checker = Checker::new(&polygon, criteria, tolerances.validate()?);
+        let checker = Checker::new(self.polygon(), criteria, tolerances.validate()?);
         let legs = self.curve().cubic().legs();
         Ok(checker.report(|i| legs[i]))
     }
+}
+
+/// The polygon of a curve that was stored with its tension and its end conditions, all of it checked.
+///
+/// # Errors
+/// Points and parameters that make no polygon; tension that is not one per point, negative or NaN.
+#[cfg(feature = "serde")]
+pub fn polygon_of_stored(
+    cubic: &shapespline_geometry::PiecewiseCubic,
+    tension: &[f64],
+    boundary: Boundary,
+) -> Result<DataPolygon, InputError> {
+    let (argument, expected, found) = ("tension", cubic.points().len(), tension.len());
+    if found != expected {
+        return Err(InputError::Length { argument, expected, found, per: "one for each point" });
+    }
+    // 1/λ − 1 of a subnormal λ is infinite.
+    if let Some(index) = tension.iter().position(|&x| !(x >= 0.0)) {
+        let (value, allowed) = (tension[index], "non-negative");
+        return Err(InputError::OutOfRange { argument, index, value, allowed });
+    }
+    cubic.polygon(boundary)
 }

@@ -45,6 +45,7 @@ mod raise;
 mod search;
 mod solved;
 mod solver_cache;
+mod spline;
 mod state;
 mod surroundings;
 mod system;
@@ -52,8 +53,9 @@ mod tension;
 
 pub use error::FitError;
 pub use family::{TensionFamily, tension_unit};
-pub use fewer::or_of_all_criteria;
 pub use interpolant::Interpolant;
+#[cfg(feature = "serde")]
+pub use interpolant::polygon_of_stored;
 pub use many::{Collection, fit_many};
 pub use options::{SearchOptions, Strategy};
 pub use outcome::{Diagnostics, Fit, FittedLegs, Outcome, Phase, Status, Step};
@@ -66,5 +68,6 @@ pub use shapespline_criteria as criteria;
 /// Points, their parameters and ends, and the evaluation of curves.
 pub use shapespline_geometry as geometry;
 pub use solved::SolvedFamily;
-pub use system::{TensionSystem, solve_legs, try_each_row};
-pub use tension::{Tension, check_stored, repeat_first_if_closed};
+pub use spline::{Spline, SplineFamily};
+pub use system::{TensionSystem, try_each_row};
+pub use tension::{Tension, repeat_first_if_closed};

@@ -76,7 +76,7 @@ pub fn try_each_row<E>(
 ///
 /// # Errors
 /// A system that f64 cannot hold.
-pub fn solve_legs<S: TensionSystem>(system: &S) -> Result<Vec<[DVec3; 2]>, SolveError> {
+pub(crate) fn solve_legs<S: TensionSystem>(system: &S) -> Result<Vec<[DVec3; 2]>, SolveError> {
     let tangents = solve_once(system)?;
     Ok(collect(system.polygon().segments(), |i| legs_of(system, &tangents, i)))
 }

@@ -2,7 +2,7 @@
 
 //! Tension as users give it: checked once, for every family.
 
-use shapespline_geometry::{DataPolygon, InputError, PiecewiseCubic};
+use shapespline_geometry::{DataPolygon, InputError};
 
 /// Tension at the nodes.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -68,23 +68,4 @@ pub fn repeat_first_if_closed(mut values: Vec<f64>, closed: bool) -> Vec<f64> {
         values.extend(values.first().copied());
     }
     values
-}
-
-/// Whether tension that was stored with a curve can be that curve's.
-///
-/// # Errors
-/// Tension that is not one a point, negative or NaN.
-pub fn check_stored(tension: &[f64], curve: &PiecewiseCubic) -> Result<(), InputError> {
-    let (argument, expected, found) = ("tension", curve.points().len(), tension.len());
-    if found != expected {
-        return Err(InputError::Length { argument, expected, found, per: "one for each point" });
-    }
-    // 1/λ − 1 of a subnormal λ is infinite.
-    match tension.iter().position(|&x| !(x >= 0.0)) {
-        Some(index) => {
-            let (value, allowed) = (tension[index], "non-negative");
-            Err(InputError::OutOfRange { argument, index, value, allowed })
-        }
-        None => Ok(()),
-    }
 }

@@ -16,7 +16,7 @@
 //! of the smaller of its two `λ`.
 //!
 //! **Guarantee.** For all `λ` in `(0, 1]` the curve exists and is unique (Theorem 3.1): the system is
-//! strictly diagonally dominant. [`TensionSpline::shape_preserving`] returns with status `Solved`
+//! strictly diagonally dominant. [`TensionSpline::shape_preserving`](Spline::shape_preserving) returns with status `Solved`
 //! only a curve that was solved and checked completely, every criterion decided exactly. The search raises the
 //! two tensions at a node together, and lowers each of the two by itself.
 //!
@@ -64,9 +64,9 @@ pub use shapespline_search::criteria;
 /// Points, their parameters and ends, and the evaluation of curves.
 pub use shapespline_search::geometry;
 pub use shapespline_search::{
-    Fit, FitError, Interpolant, SearchOptions, Status, Strategy, Tension,
+    Fit, FitError, Interpolant, SearchOptions, Spline, Status, Strategy, Tension,
 };
-pub use spline::{TangentScale, TensionSpline};
+pub use spline::{Manni, TangentScale, TensionSpline};
 
 /// The examples of the README are run as tests.
 #[cfg(doctest)]

@@ -2,17 +2,8 @@
 
 //! The C² tension cubic interpolant.
 
-use std::ops::ControlFlow;
-
-#[cfg(feature = "serde")]
-use shapespline_geometry::Curve;
-use shapespline_geometry::{
-    Boundary, DVec3, DataPolygon, InputError, PiecewiseCubic, ReparametrizedCubic,
-};
-use shapespline_search::{
-    Fit, FitError, FittedLegs, Interpolant, SearchOptions, SolvedFamily, Step, Tension,
-    or_of_all_criteria, repeat_first_if_closed, search_and_report, solve_legs,
-};
+use shapespline_geometry::{DataPolygon, InputError, PiecewiseCubic, ReparametrizedCubic};
+use shapespline_search::{Spline, SplineFamily, Tension};
 
 use crate::system::ManniSystem;
 
@@ -65,127 +56,37 @@ impl TangentScale<'_> {
 ///
 /// Its parameter is Manni's `s`: equal to the data's parameters at the points, and such that the
 /// curve is C² in it. The image alone, run through linearly on each segment, is
-/// `curve().cubic()`.
-#[derive(Debug, Clone, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(try_from = "Stored"))]
-pub struct TensionSpline {
-    curve: ReparametrizedCubic,
-    tension: Vec<f64>,
-    boundary: Boundary,
-}
+/// `curve().cubic()`, and `[λ⁰, λ¹]` of each segment are `curve().slopes()`.
+pub type TensionSpline = Spline<Manni>;
 
-/// What was stored, by whomever: checked as far as anything could go wrong later.
-#[cfg(feature = "serde")]
-#[derive(serde::Deserialize)]
-#[serde(rename = "TensionSpline")]
-struct Stored {
-    curve: ReparametrizedCubic,
-    tension: Vec<f64>,
-    boundary: Boundary,
-}
+/// The family of the C² tension cubics, which are Manni's.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Manni;
 
-#[cfg(feature = "serde")]
-impl TryFrom<Stored> for TensionSpline {
-    type Error = InputError;
+impl SplineFamily for Manni {
+    /// Of `1/λ − 1`.
+    const STEP: f64 = 0.25;
 
-    fn try_from(stored: Stored) -> Result<Self, InputError> {
-        let Stored { curve, tension, boundary } = stored;
-        shapespline_search::check_stored(&tension, curve.cubic())?;
-        Ok(Self { curve, tension, boundary })
-    }
-}
-
-impl TensionSpline {
-    /// The tension cubic of given `λ`. Cost O(N).
-    ///
-    /// # Errors
-    /// `λ` out of range or of a wrong length; tangents that overflow.
-    pub fn new(polygon: DataPolygon, scale: TangentScale<'_>) -> Result<Self, FitError> {
-        let slopes = scale.slopes(&polygon)?;
-        let system = ManniSystem::new(&polygon, slopes);
-        let legs = solve_legs(&system)?;
-        let (slopes, tension) = system.into_parts();
-        Self::assemble(polygon, legs, slopes, tension)
-    }
-
-    /// The defaults of the search for this family: growth of `1/λ − 1` begins at 0.25.
-    #[must_use]
-    pub fn options() -> SearchOptions {
-        SearchOptions { step: 0.25, ..SearchOptions::default() }
-    }
-
-    /// The tension cubic whose `λ` keep the shape of the data.
-    ///
-    /// The fit says how it ended: the curve keeps the criteria if its status is `Solved`.
-    ///
-    /// # Errors
-    /// Options outside their range; tangents that overflow.
-    pub fn shape_preserving(
-        polygon: DataPolygon,
-        options: &SearchOptions,
-    ) -> Result<Fit<Self>, FitError> {
-        Self::shape_preserving_with(polygon, options, &mut |_| ControlFlow::Continue(()))
-    }
-
-    /// As [`TensionSpline::shape_preserving`], with a monitor that sees every step of the search and
-    /// can end it.
-    ///
-    /// # Errors
-    /// As [`TensionSpline::shape_preserving`].
-    pub fn shape_preserving_with(
-        polygon: DataPolygon,
-        options: &SearchOptions,
-        monitor: &mut dyn FnMut(&Step) -> ControlFlow<()>,
-    ) -> Result<Fit<Self>, FitError> {
-        let fit = Self::searched(polygon, options, monitor)?;
-        or_of_all_criteria(fit, options, |polygon, all| Self::searched(polygon, all, monitor))
-    }
-
-    fn searched(
-        polygon: DataPolygon,
-        options: &SearchOptions,
-        monitor: &mut dyn FnMut(&Step) -> ControlFlow<()>,
-    ) -> Result<Fit<Self>, FitError> {
-        let mut family = SolvedFamily::new(ManniSystem::without_tension(&polygon))?;
-        let found = search_and_report(&mut family, &polygon, options, monitor)?;
-        let (FittedLegs { legs, outcome, report }, system) = (found, family.into_system());
-        let (slopes, tension) = system.into_parts();
-        let curve = Self::assemble(polygon, legs, slopes, tension)?;
-        Ok(Fit { curve, outcome, report })
-    }
-
-    /// `[λ⁰, λ¹]` of each segment.
-    #[must_use]
-    pub fn tangent_scale(&self) -> &[[f64; 2]] {
-        self.curve.slopes()
-    }
-
-    fn assemble(
-        polygon: DataPolygon,
-        legs: Vec<[DVec3; 2]>,
-        slopes: Vec<[f64; 2]>,
-        tension: Vec<f64>,
-    ) -> Result<Self, FitError> {
-        let boundary = polygon.boundary();
-        let tension = repeat_first_if_closed(tension, polygon.is_closed());
-        let cubic = PiecewiseCubic::through(polygon, legs)?;
-        Ok(Self { curve: ReparametrizedCubic::new(cubic, slopes)?, tension, boundary })
-    }
-}
-
-impl Interpolant for TensionSpline {
     type Curve = ReparametrizedCubic;
+    type Tension<'a> = TangentScale<'a>;
+    type System<'p> = ManniSystem<'p>;
 
-    fn curve(&self) -> &ReparametrizedCubic {
-        &self.curve
+    fn system<'p>(
+        polygon: &'p DataPolygon,
+        scale: TangentScale<'_>,
+    ) -> Result<ManniSystem<'p>, InputError> {
+        Ok(ManniSystem::new(polygon, scale.slopes(polygon)?))
     }
 
-    fn tension(&self) -> &[f64] {
-        &self.tension
+    fn without_tension(polygon: &DataPolygon) -> ManniSystem<'_> {
+        ManniSystem::without_tension(polygon)
     }
 
-    fn boundary(&self) -> Boundary {
-        self.boundary
+    fn curve(
+        cubic: PiecewiseCubic,
+        system: ManniSystem<'_>,
+    ) -> Result<(ReparametrizedCubic, Vec<f64>), InputError> {
+        let (slopes, tension) = system.into_parts();
+        Ok((ReparametrizedCubic::new(cubic, slopes)?, tension))
     }
 }

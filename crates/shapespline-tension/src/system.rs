@@ -13,7 +13,7 @@ use shapespline_search::{TensionSystem, tension_unit, try_each_row};
 ///
 /// Off-diagonal entries are at most 1 together, the diagonal is 3 less them.
 #[derive(Debug)]
-pub(crate) struct ManniSystem<'a> {
+pub struct ManniSystem<'a> {
     polygon: &'a DataPolygon,
     /// `[λ⁰, λ¹]` of each segment.
     slopes: Vec<[f64; 2]>,

@@ -220,8 +220,8 @@ fn notes_on_nodes_and_oscillation() {
         let polygon =
             DataPolygon::planar(&planar, &Parametrization::Uniform, Boundary::ZeroCurvature);
         let spline = NuSpline::new(polygon.unwrap(), Tension::Uniform(0.0)).unwrap();
-        let polygon = spline.polygon().unwrap();
-        let notes = every(&polygon).node_conditions(|i| spline.curve().legs()[i]);
+        let polygon = spline.polygon();
+        let notes = every(polygon).node_conditions(|i| spline.curve().legs()[i]);
         notes.nodes.into_iter().find(|r| r.node == 2).unwrap()
     };
     let inflection = bends(-1.0);

@@ -14,7 +14,6 @@ use super::{Family, SpaceCurve};
 use crate::{
     asked::{Asked, Given},
     diagnostics::{Diagnostics, SearchStep, Work},
-    error::input_error,
     fair_diagnostics::{FairDiagnostics, FairStep},
     options::{self, CriteriaNames},
     output::{FloatArray, vectors},
@@ -209,14 +208,10 @@ impl SpaceCurve {
 
     /// Discrete torsion of the data on each segment, in reciprocal units of the points, shape
     /// (segments,); NaN where there is none. For figures.
-    fn _discrete_torsion<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        let of_all = || {
-            let polygon = self.curve.polygon()?;
-            Ok((0..polygon.segments()).map(|i| polygon.discrete_torsion(i)).collect())
-        };
-        let torsion =
-            without_gil(py, self.curve.cubic().segments(), of_all).map_err(input_error)?;
-        Ok(PyArray1::from_vec(py, torsion))
+    fn _discrete_torsion<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        let polygon = self.curve.polygon();
+        let of_all = || (0..polygon.segments()).map(|i| polygon.discrete_torsion(i)).collect();
+        PyArray1::from_vec(py, without_gil(py, polygon.segments(), of_all))
     }
 
     /// Check whether the curve keeps the shape of its points.

@@ -12,7 +12,7 @@ use pyo3::{PyClass, PyClassInitializer, exceptions::PyTypeError, prelude::*};
 use shapespline::{
     catmull_rom::CatmullRom,
     fair::FairSpline,
-    geometry::{self, Boundary, DVec3, DataPolygon, InputError, PiecewiseCubic, Side},
+    geometry::{self, Boundary, DVec3, DataPolygon, PiecewiseCubic, Side},
     nu::NuSpline,
     search::Interpolant,
     tension::TensionSpline,
@@ -68,7 +68,7 @@ impl Member for TensionSpline {
     const FAMILY: Family = Family::Tension;
 
     fn is_sound(&self) -> bool {
-        let slopes = self.tangent_scale();
+        let slopes = Interpolant::curve(self).slopes();
         let valid = |x: &f64| *x > 0.0 && *x <= 1.0;
         slopes.len() == Curve::cubic(self).segments() && slopes.iter().flatten().all(valid)
     }
@@ -104,7 +104,7 @@ pub(crate) trait Curve: Debug + Send + Sync {
     fn straight(&self) -> &[usize] {
         &[]
     }
-    fn polygon(&self) -> Result<DataPolygon, InputError>;
+    fn polygon(&self) -> &DataPolygon;
     fn is_sound(&self) -> bool;
     /// Appends the curve in postcard's form.
     fn write(&self, bytes: Vec<u8>) -> Result<Vec<u8>, postcard::Error>;
@@ -132,7 +132,7 @@ impl<C: Member> Curve for C {
     fn boundary(&self) -> Boundary {
         Interpolant::boundary(self)
     }
-    fn polygon(&self) -> Result<DataPolygon, InputError> {
+    fn polygon(&self) -> &DataPolygon {
         Interpolant::polygon(self)
     }
     fn is_sound(&self) -> bool {
@@ -174,7 +174,7 @@ impl Curve for FairSpline {
     fn straight(&self) -> &[usize] {
         self.straight()
     }
-    fn polygon(&self) -> Result<DataPolygon, InputError> {
+    fn polygon(&self) -> &DataPolygon {
         self.polygon()
     }
     fn is_sound(&self) -> bool {

@@ -23,7 +23,7 @@ const CHEAP: f64 = 0.01;
 
 /// A curve beside the C² cubic spline with the same points, parameters and ends.
 pub(crate) struct Comparison<'a> {
-    polygon: Cow<'a, DataPolygon>,
+    polygon: &'a DataPolygon,
     /// The breaks of the curve, as parameters of the polygon.
     breaks: Vec<f64>,
     map: &'a InputMap,
@@ -47,10 +47,10 @@ impl<'a> Comparison<'a> {
         let (polygon, map, curve) = match subject {
             Subject::Own(curve) => {
                 let pieces = PiecewiseBezier::from(curve.cubic());
-                (Cow::Owned(curve.polygon().ok()?), &curve.map, Cow::Owned(pieces))
+                (curve.polygon(), &curve.map, Cow::Owned(pieces))
             }
             Subject::Other { polygon, curve, map, .. } => {
-                (Cow::Borrowed(&**polygon), &**map, Cow::Borrowed(&**curve))
+                (&**polygon, &**map, Cow::Borrowed(&**curve))
             }
         };
         let breaks = match subject {
@@ -61,7 +61,7 @@ impl<'a> Comparison<'a> {
             }
             Subject::Other { .. } => curve.breaks().to_vec(),
         };
-        let cubic = NuSpline::new(polygon.clone().into_owned(), Tension::Uniform(0.0)).ok()?;
+        let cubic = NuSpline::new(polygon.clone(), Tension::Uniform(0.0)).ok()?;
         let cubic_fairness = fairness_with(&PiecewiseBezier::from(cubic.curve()), go_on)?;
         let own_fairness = fairness_with(&curve, go_on)?;
         Some(Self { polygon, breaks, map, cubic, own_fairness, cubic_fairness })
@@ -98,7 +98,7 @@ impl<'a> Comparison<'a> {
     /// The criterion for which the curve bends most beyond what the C² cubic does; none where none costs
     /// anything.
     pub(crate) fn costliest(&self, asked: Asked) -> Option<Cost> {
-        let checker = Checker::new(&self.polygon, asked.to_check(), asked.tolerances);
+        let checker = Checker::new(self.polygon, asked.to_check(), asked.tolerances);
         let legs = self.cubic.curve().legs();
         let violations = checker.report(|i| legs[i]).violations;
         let n = self.polygon.segments();

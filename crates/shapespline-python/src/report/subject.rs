@@ -116,14 +116,14 @@ impl Subject {
         let (criteria, tolerances) = (asked.to_check(), asked.tolerances);
         match self {
             Self::Own(curve) => {
-                let polygon = curve.polygon()?;
+                let polygon = curve.polygon();
                 let broken = |nodes: &[usize]| nodes.len() < curve.cubic().knots().len();
                 let special = !curve.corners().is_empty() || !curve.straight().is_empty();
                 if curve.nodes().is_some_and(broken) || special {
                     // Several pieces per segment, corners or straight runs: decided piece by piece.
                     let pieces = PiecewiseBezier::from(curve.cubic());
                     return CurveChecker::new(
-                        &polygon,
+                        polygon,
                         &pieces,
                         criteria,
                         tolerances,
@@ -137,7 +137,7 @@ impl Subject {
                     .map(|checker| work(Judge::Other(checker, &curve.map)))
                     .map_err(|error| placed(&curve.map, error));
                 }
-                let checker = Checker::new(&polygon, criteria, tolerances);
+                let checker = Checker::new(polygon, criteria, tolerances);
                 Ok(work(Judge::Own(checker, curve.cubic().legs(), curve)))
             }
             Self::Other { polygon, curve, map, interpolation, corners, straight } => {
