@@ -19,8 +19,10 @@ from scipy.interpolate import (  # type: ignore[import-untyped, unused-ignore]
 from typing_extensions import Self, disjoint_base
 
 __version__: str
+_NAMES: dict[str, list[str]]
 
 __all__ = [
+    "_NAMES",
     "CatmullRom",
     "ConvergenceError",
     "Diagnostics",

@@ -11,7 +11,7 @@ import numpy as np
 from shapespline import _core
 from shapespline._convert import piecewise
 from shapespline._core import InputError, MonotoneCubic
-from shapespline._kinds import KINDS, kind_of
+from shapespline._methods import entry_of, given_options
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -147,16 +147,10 @@ def fit_monotone(
         "clip": clip,
         "shape": shape,
     }
-    entry = kind_of(kind)
-    given = {name: value for name, value in options.items() if value is not None}
-    for name in given:
-        if name not in entry.options:
-            having = ", ".join(f"'{n}'" for n, other in KINDS.items() if name in other.options)
-            raise TypeError(
-                f"{name} is no option of kind '{kind}': its options are "
-                f"{', '.join(entry.options)}; kinds that have it: {having}"
-            )
-    return entry.fit(x, y, axis, extrapolate=extrapolate, **given)
+    entry = entry_of("kind", kind)
+    given = given_options("kind", kind, options, entry.options)
+    function: MonotoneSpline = entry.fit(x, y, axis, extrapolate=extrapolate, **given)
+    return function
 
 
 def histospline(

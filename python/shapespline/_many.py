@@ -9,7 +9,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Literal, overload
 
 from shapespline._core import InputError, _fit_many
-from shapespline._methods import METHODS, given_options, method_of
+from shapespline._methods import METHODS, entry_of, given_options
 from shapespline._pickling import sealed
 
 if TYPE_CHECKING:
@@ -218,7 +218,7 @@ def fit_many(
     if errors not in ("return", "raise"):
         text = f"errors must be one of 'return', 'raise'; got {errors!r}"
         raise InputError(text, "errors", value=errors)
-    entry = method_of(method)
+    entry = entry_of("method", method)
     if not (shape_preserving or entry.given):
         text = f"shape_preserving must be True with method '{method}', which has no tension to give"
         raise InputError(text, "shape_preserving", value=False)
@@ -242,7 +242,7 @@ def fit_many(
     known, where = entry.options, " with shape_preserving=True"
     if not shape_preserving:
         known, where = entry.given, " with shape_preserving=False"
-    given = given_options(method, options, known, where)
+    given = given_options("method", method, options, known, where)
     if parameters is None:
         parameters = entry.parameters
     curves, failed = _fit_many(
@@ -255,7 +255,7 @@ def fit_many(
         repeated,
         bool(shape_preserving),
         threads,
-        **{**_ALL, **given},
+        **{**_ALL, **known, **given},
     )
     if failed and errors == "raise":
         raise failed[min(failed)]

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Literal, overload
 
-from shapespline._methods import given_options, method_of
+from shapespline._methods import entry_of, given_options
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -220,9 +220,10 @@ def fit(
         "continuity": continuity,
         "directions": directions,
     }
-    entry = method_of(method)
-    given = given_options(method, options, {**entry.options, **entry.alone})
+    entry = entry_of("method", method)
+    given = given_options("method", method, options, {**entry.options, **entry.alone})
     chosen = entry.parameters if parameters is None else parameters
     if boundary is not None:
         given["boundary"] = boundary
-    return entry.fit(points, chosen, closed=closed, repeated=repeated, **given)
+    curve: SpaceCurve = entry.fit(points, chosen, closed=closed, repeated=repeated, **given)
+    return curve

@@ -85,6 +85,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(shape::_polygon_inflections, module)?)?;
     module.add_function(wrap_pyfunction!(shape::_polygon_shape, module)?)?;
     monotone::register(module)?;
+    module.add("_NAMES", options::names(module.py())?)?;
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
     let py = module.py();
     curve::document_call::<curve::SpaceCurve>(py)?;

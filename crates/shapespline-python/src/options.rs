@@ -2,7 +2,11 @@
 
 //! Options that users write by name.
 
-use pyo3::{exceptions::PyTypeError, prelude::*};
+use pyo3::{
+    exceptions::PyTypeError,
+    prelude::*,
+    types::{IntoPyDict, PyDict},
+};
 use shapespline::{
     catmull_rom::{Continuity, Directions},
     criteria::{Criteria, Criterion, Tolerances},
@@ -41,6 +45,37 @@ fn name(argument: &str, object: &Bound<'_, PyAny>) -> PyResult<String> {
 const ENERGIES: [(&str, Energy); 2] =
     [("parametric", Energy::Parametric), ("bending", Energy::Bending)];
 
+const CONTINUITIES: [(&str, Continuity); 2] = [("C1", Continuity::C1), ("G1", Continuity::G1)];
+const DIRECTIONS: [(&str, Directions); 2] =
+    [("balanced", Directions::Balanced), ("parametrization", Directions::Parametrization)];
+const SPACINGS: [(&str, Spacing); 2] =
+    [("parameter", Spacing::Parameter), ("arc-length", Spacing::ArcLength)];
+const REPEATED: [(&str, Repeated); 2] = [("error", Repeated::Error), ("drop", Repeated::Drop)];
+const BOUNDARIES: [(&str, Boundary); 4] = [
+    ("zero-curvature", Boundary::ZeroCurvature),
+    ("natural", Boundary::ZeroCurvature),
+    ("periodic", Boundary::Periodic),
+    ("circular", Boundary::Circular),
+];
+
+/// The names that options of curves take, for the command line and for the types in the stub.
+pub(crate) fn names(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
+    fn of<T>(table: &[(&'static str, T)]) -> Vec<&'static str> {
+        table.iter().map(|(name, _)| *name).collect()
+    }
+    let all = [
+        ("boundary", of(&BOUNDARIES)),
+        ("by", of(&SPACINGS)),
+        ("continuity", of(&CONTINUITIES)),
+        ("criteria", Criterion::ALL.iter().map(|criterion| criterion.name()).collect()),
+        ("directions", of(&DIRECTIONS)),
+        ("energy", of(&ENERGIES)),
+        ("repeated", of(&REPEATED)),
+        ("strategy", of(&Strategy::NAMED)),
+    ];
+    all.into_py_dict(py)
+}
+
 pub(crate) fn energy(object: &Bound<'_, PyAny>) -> PyResult<Energy> {
     choose("energy", &name("energy", object)?, &ENERGIES)
 }
@@ -59,14 +94,11 @@ pub(crate) fn strategy(object: &Bound<'_, PyAny>) -> PyResult<Strategy> {
 }
 
 pub(crate) fn continuity(object: &Bound<'_, PyAny>) -> PyResult<Continuity> {
-    let kinds = [("C1", Continuity::C1), ("G1", Continuity::G1)];
-    choose("continuity", &name("continuity", object)?, &kinds)
+    choose("continuity", &name("continuity", object)?, &CONTINUITIES)
 }
 
 pub(crate) fn directions(object: &Bound<'_, PyAny>) -> PyResult<Directions> {
-    let kinds =
-        [("balanced", Directions::Balanced), ("parametrization", Directions::Parametrization)];
-    choose("directions", &name("directions", object)?, &kinds)
+    choose("directions", &name("directions", object)?, &DIRECTIONS)
 }
 
 /// The name of what is continuous.
@@ -115,13 +147,11 @@ pub(crate) enum Spacing {
 }
 
 pub(crate) fn by(object: &Bound<'_, PyAny>) -> PyResult<Spacing> {
-    let ways = [("parameter", Spacing::Parameter), ("arc-length", Spacing::ArcLength)];
-    choose("by", &name("by", object)?, &ways)
+    choose("by", &name("by", object)?, &SPACINGS)
 }
 
 pub(crate) fn repeated(object: &Bound<'_, PyAny>) -> PyResult<Repeated> {
-    let ways = [("error", Repeated::Error), ("drop", Repeated::Drop)];
-    choose("repeated", &name("repeated", object)?, &ways)
+    choose("repeated", &name("repeated", object)?, &REPEATED)
 }
 
 pub(crate) fn closed(object: &Bound<'_, PyAny>) -> PyResult<bool> {
@@ -327,14 +357,8 @@ impl<'py> FromPyObject<'_, 'py> for Ends {
     type Error = PyErr;
 
     fn extract(object: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
-        const NAMES: [(&str, Boundary); 4] = [
-            ("zero-curvature", Boundary::ZeroCurvature),
-            ("natural", Boundary::ZeroCurvature),
-            ("periodic", Boundary::Periodic),
-            ("circular", Boundary::Circular),
-        ];
         if let Some(name) = text(&object) {
-            return match NAMES.iter().find(|(known, _)| *known == name) {
+            return match BOUNDARIES.iter().find(|(known, _)| *known == name) {
                 Some((_, boundary)) => Ok(Self::Named(*boundary)),
                 None => Err(unknown(
                     "boundary",

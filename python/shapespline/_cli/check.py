@@ -15,7 +15,6 @@ import shapespline
 from shapespline import _core
 from shapespline._cli.files import read_curve
 from shapespline._cli.options import (
-    BOUNDARIES,
     Parser,
     add_closing,
     add_corners,
@@ -33,6 +32,7 @@ from shapespline._cli.text_io import (
     refuse_overwriting,
     write,
 )
+from shapespline._methods import CHECKED, METHODS
 
 if TYPE_CHECKING:
     import argparse
@@ -41,9 +41,6 @@ if TYPE_CHECKING:
     from shapespline._cli.tables import Points
 
 __all__ = ["add_check"]
-
-#: The options of a check.
-CHECKED = ("criteria", "resolution", "coplanarity", "collinearity", "tolerance")
 
 
 def _located(
@@ -148,10 +145,7 @@ def add_check(commands: argparse._SubParsersAction[Parser]) -> None:
         help="check that a function y(x) rises and falls as its data do (default where CURVE.json "
         "says so)",
     )
-    known = (
-        "convexity, inflection, turning, torsion, coplanarity, collinearity, global-convexity, "
-        "regular"
-    )
+    known = ", ".join(_core._NAMES["criteria"])
     parser.add_argument(
         "--criteria",
         type=names,
@@ -161,19 +155,20 @@ def add_check(commands: argparse._SubParsersAction[Parser]) -> None:
     )
     parser.add_argument(
         "--boundary",
-        choices=BOUNDARIES,
+        choices=_core._NAMES["boundary"],
         help="what stands in for the missing chords at the ends (default: what CURVE.json says)",
     )
     add_closing(parser, "as CURVE.json has it")
     add_corners(parser, "points at which there are corners", "those of CURVE.json")
-    for name, default, what in (
-        ("resolution", 0, "accuracy of the points, in their units"),
-        ("coplanarity", 0.2, "sine of the largest angle between binormal and plane normal"),
-        ("collinearity", 0.2, "sine of the largest angle between tangent and line"),
-        ("tolerance", 1e-9, "what counts as zero, and as passing through a point"),
+    for name, what in (
+        ("resolution", "accuracy of the points, in their units"),
+        ("coplanarity", "sine of the largest angle between binormal and plane normal"),
+        ("collinearity", "sine of the largest angle between tangent and line"),
+        ("tolerance", "what counts as zero, and as passing through a point"),
     ):
+        default = METHODS["fair"].options[name]
         parser.add_argument(
-            f"--{name}", type=real, help=f"{what} (default: that of the fit, else {default})"
+            f"--{name}", type=real, help=f"{what} (default: that of the fit, else {default:g})"
         )
     parser.add_argument(
         "--report", type=Path, metavar="OUT.json", help="write the whole report to this file"

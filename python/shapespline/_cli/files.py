@@ -16,7 +16,6 @@ from typing import TYPE_CHECKING, Any, NoReturn
 
 import numpy as np
 
-from shapespline import _methods
 from shapespline._cli.text_io import FileError, shortened, text_of, write
 from shapespline._convert import piecewise
 from shapespline._core import (
@@ -27,7 +26,7 @@ from shapespline._core import (
     SpaceCurve,
     Tangents,
 )
-from shapespline._kinds import KINDS
+from shapespline._methods import CHECKED, KINDS, METHODS
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -41,16 +40,12 @@ __all__ = ["CurveFile", "read_curve", "write_curve"]
 FORMAT = "shapespline-curve"
 VERSION = 1
 #: Names of the families, as the command line has them.
-METHODS: dict[type, str] = {
-    **{method.family: name for name, method in _methods.METHODS.items()},
-    **{kind.family: name for name, kind in KINDS.items()},
+NAMES: dict[type, str] = {
+    method.family: name for table in (METHODS, KINDS) for name, method in table.items()
 }
 
 
 # Curves
-
-#: What a check is asked, and a shape-preserving fit before it.
-_OPTIONS = ("criteria", "resolution", "coplanarity", "collinearity", "tolerance")
 
 
 @dataclass(frozen=True)
@@ -185,8 +180,8 @@ def _fit_options(document: _Document) -> dict[str, Any] | None:
     given = document.entries.get(key)
     if given is None:
         return None
-    if not isinstance(given, dict) or not set(given) <= set(_OPTIONS):
-        document.fail(f"'{key}' must be an object with entries {', '.join(_OPTIONS)}", key)
+    if not isinstance(given, dict) or not set(given) <= set(CHECKED):
+        document.fail(f"'{key}' must be an object with entries {', '.join(CHECKED)}", key)
     for name, option in given.items():
         if name == "criteria":
             if not isinstance(option, list) or not all(isinstance(c, str) for c in option):
@@ -255,7 +250,7 @@ def write_curve(path: Path, curve: Any) -> None:
     pieces = piecewise(curve)
     entries: dict[str, Any] = {"format": FORMAT, "version": VERSION, "type": "bezier"}
     if isinstance(curve, SpaceCurve):
-        entries["method"] = METHODS.get(type(curve), type(curve).__name__)
+        entries["method"] = NAMES.get(type(curve), type(curve).__name__)
         entries["parameters"] = curve.parameters.tolist()
         ends = curve.boundary
         entries["boundary"] = (
@@ -273,7 +268,7 @@ def write_curve(path: Path, curve: Any) -> None:
         if (options := curve._fit_options()) is not None:
             entries["fit_options"] = options
     elif isinstance(curve, MonotoneSpline):
-        entries["method"] = METHODS[type(curve)]
+        entries["method"] = NAMES[type(curve)]
         entries["shape"] = "monotone"
     entries["breaks"] = pieces.breaks.tolist()
     entries["control"] = pieces.control.tolist()

@@ -34,8 +34,7 @@ from shapespline._cli.text_io import (
     refuse_overwriting,
     write,
 )
-from shapespline._kinds import KINDS
-from shapespline._methods import METHODS, Method
+from shapespline._methods import CHECKED, KINDS, METHODS
 
 if TYPE_CHECKING:
     import argparse
@@ -50,28 +49,23 @@ if TYPE_CHECKING:
 
 __all__ = ["add_fit", "located", "run"]
 
-_CHECK = ("criteria", "resolution", "coplanarity", "collinearity", "tolerance")
 _CURVE = ("parameters", "boundary", "closed", "repeated", "start_tangent", "end_tangent")
-#: Of the options of functions those that a command line can say.
-_FUNCTION_FLAGS = {
-    "cubic": ("convex", "ends", "layer", "min_slope", "tolerance"),
-    "quintic": ("slopes", "energy", "tolerance"),
-    "quartic": ("shape", "tolerance"),
+#: What a command line cannot say: arrays, and what is for arrays.
+_UNSAID = {
+    "fair": ("tangents",),
+    "cubic": ("slopes",),
+    "quintic": ("clip",),
+    "quartic": ("slopes",),
 }
-
-
-def _flags(method: Method) -> tuple[str, ...]:
-    """Return a method's options that a command line can say."""
-    return tuple(name for name in method.all_options if name != "tangents")
-
-
 #: Options of every method, the default method first.
 OPTIONS: dict[str, tuple[str, ...]] = {
-    **{name: (*_CURVE, *_flags(method)) for name, method in METHODS.items()},
-    **_FUNCTION_FLAGS,
+    name: (
+        *(_CURVE if table is METHODS else ("tolerance",)),
+        *(option for option in method.all_options if option not in _UNSAID.get(name, ())),
+    )
+    for table in (METHODS, KINDS)
+    for name, method in table.items()
 }
-#: Names of given tension: with one of them there is no search.
-_GIVEN = ("tension", "tangent_scale")
 #: Most samples that are written unasked, but for one per point.
 MOST_UNASKED = 100_001
 #: Most samples that are written at all: a table of about a gigabyte.
@@ -130,9 +124,10 @@ def _fit_curve(name: str, data: Points, given: dict[str, Any]) -> _Fit:
     given = _ends(dict(given))
     if data.parameters is not None:
         given.setdefault("parameters", data.parameters)
-    check = {option: given[option] for option in _CHECK if option in given}
-    if any(option in given for option in _GIVEN):
-        plain = {option: value for option, value in given.items() if option not in _CHECK}
+    check = {option: given[option] for option in CHECKED if option in given}
+    if any(option in method.given and option not in method.options for option in given):
+        # Tension is given: there is no search.
+        plain = {option: value for option, value in given.items() if option not in CHECKED}
         for option in plain:
             if option in method.options and option not in method.given:
                 raise UsageError(f"{_flag(option)} is for a search, not given tension")

@@ -12,12 +12,13 @@ from typing import TYPE_CHECKING, NoReturn
 
 from shapespline._cli.cells import number
 from shapespline._cli.text_io import LONGEST, shortened
+from shapespline._core import _NAMES
+from shapespline._methods import KINDS, METHODS
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
 __all__ = [
-    "BOUNDARIES",
     "Parser",
     "add_closing",
     "add_corners",
@@ -26,8 +27,6 @@ __all__ = [
     "names",
     "real",
 ]
-
-BOUNDARIES = ["zero-curvature", "natural", "periodic", "circular"]
 
 
 class Parser(argparse.ArgumentParser):
@@ -117,7 +116,7 @@ def add_closing(group: argparse._ActionsContainer, otherwise: str) -> None:
     )
     group.add_argument(
         "--repeated",
-        choices=["error", "drop"],
+        choices=_NAMES["repeated"],
         help="what becomes of points that equal the one before them, or are given its parameter: "
         f"refused, or left out (default: {otherwise})",
     )
@@ -132,6 +131,15 @@ def add_corners(group: argparse._ActionsContainer, what: str, otherwise: str) ->
         help=f"{what}, by index from 0, or as a number with a decimal point the turning angle "
         f"(radians) from which on points are corners (default: {otherwise})",
     )
+
+
+def _default(option: str, *names: str) -> str:
+    """Return the default of an option, of several methods each."""
+    values = [{**METHODS, **KINDS}[name].options[option] for name in names]
+    shown = [f"{value:g}" if isinstance(value, float) else str(value) for value in values]
+    if len(names) > 1:
+        shown = [f"{name}: {text}" for name, text in zip(names, shown, strict=True)]
+    return f"(default: {'; '.join(shown)})"
 
 
 def add_fit_options(parser: argparse.ArgumentParser, methods: Iterable[str]) -> None:
@@ -161,7 +169,7 @@ def add_fit_options(parser: argparse.ArgumentParser, methods: Iterable[str]) -> 
     )
     out.add_argument(
         "--by",
-        choices=["parameter", "arc-length"],
+        choices=_NAMES["by"],
         default="parameter",
         help="how samples are spaced (default: %(default)s)",
     )
@@ -180,7 +188,7 @@ def add_fit_options(parser: argparse.ArgumentParser, methods: Iterable[str]) -> 
     )
     curve.add_argument(
         "--boundary",
-        choices=BOUNDARIES,
+        choices=_NAMES["boundary"],
         help="end conditions (default: zero-curvature; with --closed, periodic)",
     )
     add_closing(curve, "open, and refused")
@@ -215,13 +223,13 @@ def add_fit_options(parser: argparse.ArgumentParser, methods: Iterable[str]) -> 
         )
     curve.add_argument(
         "--strategy",
-        choices=["fairest", "growth", "reduction", "nussp"],
-        help="nu, tension: how tension is searched for (default: fairest)",
+        choices=_NAMES["strategy"],
+        help="nu, tension: how tension is searched for " + _default("strategy", "nu"),
     )
     curve.add_argument(
         "--energy",
-        choices=["parametric", "bending"],
-        help="what is minimised (fair: default parametric; quintic: default bending)",
+        choices=_NAMES["energy"],
+        help="what is minimised " + _default("energy", "fair", "quintic"),
     )
     add_corners(curve, "fair: points at which there are corners", "none")
     curve.add_argument(
@@ -237,12 +245,15 @@ def add_fit_options(parser: argparse.ArgumentParser, methods: Iterable[str]) -> 
         help="fair: exactly straight along collinear runs of points",
     )
     curve.add_argument(
-        "--continuity", choices=["C1", "G1"], help="catmull-rom: one handle scale per point, or two"
+        "--continuity",
+        choices=_NAMES["continuity"],
+        help="catmull-rom: one handle scale per point, or two",
     )
     curve.add_argument(
         "--directions",
-        choices=["balanced", "parametrization"],
-        help="catmull-rom: tangents of a shape-preserving curve (default: balanced)",
+        choices=_NAMES["directions"],
+        help="catmull-rom: tangents of a shape-preserving curve "
+        + _default("directions", "catmull-rom"),
     )
 
     function = parser.add_argument_group("functions (cubic, quintic, quartic)")
@@ -252,24 +263,30 @@ def add_fit_options(parser: argparse.ArgumentParser, methods: Iterable[str]) -> 
     function.add_argument(
         "--ends",
         choices=["estimated", "natural", "periodic"],
-        help="cubic: slopes at the ends (default: estimated)",
+        help="cubic: slopes at the ends " + _default("ends", "cubic"),
     )
     function.add_argument(
         "--layer",
         type=real,
         metavar="X",
         help="cubic: share of an interval in which y'' goes to its value at turns and flats "
-        "(default: 1/16)",
+        + _default("layer", "cubic"),
     )
     function.add_argument(
         "--min-slope",
         type=real,
         metavar="X",
-        help="cubic: least slope as a share of the smallest secant nearby (default: 0)",
+        help="cubic: least slope as a share of the smallest secant nearby "
+        + _default("min_slope", "cubic"),
     )
     function.add_argument(
-        "--slopes", choices=["optimal", "fritsch-butland"], help="quintic (default: optimal)"
+        "--slopes",
+        choices=["optimal", "fritsch-butland"],
+        help="quintic " + _default("slopes", "quintic"),
     )
     function.add_argument(
-        "--shape", type=real, metavar="X", help="quartic: first value of α and β (default: 1)"
+        "--shape",
+        type=real,
+        metavar="X",
+        help="quartic: first value of α and β " + _default("shape", "quartic"),
     )
