@@ -7,8 +7,15 @@
 
 use std::ops::Range;
 
-use shapespline_criteria::{BatchChecker, BatchRequirements, Criterion, Requirements, Violations};
-use shapespline_geometry::{DVec3, DataPolygon, SegmentBatch, VectorLanes, normalized_scale};
+use shapespline_criteria::{
+    Criterion, Requirements, Violations,
+    batch::{BatchChecker, BatchRequirements},
+};
+use shapespline_geometry::{
+    DVec3, DataPolygon,
+    batch::{SegmentBatch, VectorLanes},
+    normalized_scale,
+};
 
 use crate::{
     Continuity, HandleOptions,

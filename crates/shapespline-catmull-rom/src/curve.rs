@@ -8,8 +8,8 @@ use shapespline_criteria::{Criteria, ShapeReport, Tolerances};
 use shapespline_geometry::{DVec3, DataPolygon, InputError, PiecewiseCubic};
 use shapespline_polynomial::parallel;
 use shapespline_search::{
-    Fit, FitError, Interpolant, Outcome, SearchOptions, Step, Tension, repeat_first_if_closed,
-    search_and_report,
+    Fit, FitError, Interpolant, Outcome, SearchOptions, Step, Tension,
+    family::{repeat_first_if_closed, search_and_report},
 };
 
 use crate::{
@@ -116,7 +116,7 @@ impl TryFrom<Stored> for CatmullRom {
 
     fn try_from(stored: Stored) -> Result<Self, InputError> {
         let Stored { curve, tension, boundary, continuity } = stored;
-        let polygon = shapespline_search::polygon_of_stored(&curve, &tension, boundary)?;
+        let polygon = shapespline_search::family::polygon_of_stored(&curve, &tension, boundary)?;
         Ok(Self { curve, tension, polygon, continuity })
     }
 }

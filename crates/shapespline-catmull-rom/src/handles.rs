@@ -6,7 +6,7 @@ use std::{convert::Infallible, ops::Range};
 
 use shapespline_geometry::{DVec3, DataPolygon};
 use shapespline_polynomial::parallel;
-use shapespline_search::{TensionFamily, tension_unit};
+use shapespline_search::family::{TensionFamily, tension_unit};
 
 use crate::tangents::tangent;
 

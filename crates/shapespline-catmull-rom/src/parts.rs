@@ -4,8 +4,8 @@
 //! cache. Everything is local: batches know nothing of each other.
 
 use shapespline_banded::SolveError;
-use shapespline_criteria::{BatchChecker, Requirements};
-use shapespline_geometry::{DVec3, DataPolygon, SegmentBatch};
+use shapespline_criteria::{Requirements, batch::BatchChecker};
+use shapespline_geometry::{DVec3, DataPolygon, batch::SegmentBatch};
 use shapespline_polynomial::parallel;
 
 use crate::{

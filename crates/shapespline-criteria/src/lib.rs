@@ -49,8 +49,9 @@
 //! ```
 
 mod arbitrary_degree;
-mod batch;
-mod cached;
+// Reached by the crates that search; its verdicts are those of a [`Checker`], asked of many segments at once.
+#[doc(hidden)]
+pub mod batch;
 mod checker;
 mod cone;
 mod criterion;
@@ -67,9 +68,9 @@ mod rounding;
 mod turning;
 mod violations;
 
+use batch::{BatchChecker, CachedChecker};
+
 pub use arbitrary_degree::{CurveChecker, CurveError, INTERPOLATION, check_curve};
-pub use batch::{BatchChecker, BatchRequirements};
-pub use cached::CachedChecker;
 pub use checker::{Checker, check};
 pub use criterion::{Criteria, Criterion, Tolerances};
 pub use inflections::{

@@ -6,7 +6,7 @@
 use std::ops::Range;
 
 use glam::DVec3;
-use shapespline_geometry::{DataPolygon, Dimension, SegmentBatch, length, normalize};
+use shapespline_geometry::{DataPolygon, Dimension, batch::SegmentBatch, length, normalize};
 use shapespline_polynomial::parallel;
 
 use crate::{Criteria, Criterion, Tolerances, resolution::leave_known};

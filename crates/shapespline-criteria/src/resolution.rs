@@ -13,7 +13,7 @@
 //!   the plane always.
 
 use glam::DVec3;
-use shapespline_geometry::{DataPolygon, Dimension, SegmentBatch};
+use shapespline_geometry::{DataPolygon, Dimension, batch::SegmentBatch};
 
 use crate::{Criterion, Requirements};
 

@@ -35,6 +35,9 @@
 //! ```
 
 mod arc_length;
+// Reached by the crates that check and shape segments in batches; users meet segments one at a time.
+#[doc(hidden)]
+pub mod batch;
 mod boundary;
 mod bspline;
 mod curve;
@@ -53,7 +56,6 @@ mod ragged;
 mod reparametrization;
 mod reparametrized;
 mod segment;
-mod segment_batch;
 mod vector;
 
 pub use arc_length::ArcLength;
@@ -66,7 +68,7 @@ pub use fairness::{
 pub use frame::Frame;
 pub use glam::{DVec3, DVec4};
 pub use input::{InputMap, InputPoints, Repeated};
-pub use locate::{Locator, Side};
+pub use locate::Side;
 pub use parametrization::Parametrization;
 pub use piecewise::{Domain, PiecewiseCubic};
 pub use piecewise_bezier::{BezierPart, PiecewiseBezier};
@@ -75,7 +77,6 @@ pub use ragged::Ragged;
 pub use reparametrization::MonotoneCubic;
 pub use reparametrized::ReparametrizedCubic;
 pub use segment::CubicSegment;
-pub use segment_batch::{SegmentBatch, VectorLanes};
 /// Bernstein polynomials and what proves their signs.
 pub use shapespline_polynomial as polynomial;
 pub use vector::{length, normalize, normalized_scale};

@@ -30,7 +30,7 @@ pub(crate) fn search(knots: &[f64], u: f64, side: Side) -> usize {
 /// Bucket table over the knots: the segment of a parameter in O(1) for knots that are spread evenly,
 /// never worse than O(log N).
 #[derive(Debug, Clone)]
-pub struct Locator {
+pub(crate) struct Locator {
     start: f64,
     buckets_per_unit: f64,
     /// `first[b]` is the segment that holds the left end of bucket `b`; one more entry closes it.
@@ -41,7 +41,7 @@ impl Locator {
     /// Table for strictly increasing knots (at least two). Cost and memory O(N), four bytes a bucket.
     /// `None` when a table cannot serve: more than `u32::MAX` segments, or a width that overflows.
     #[must_use]
-    pub fn new(knots: &[f64]) -> Option<Self> {
+    pub(crate) fn new(knots: &[f64]) -> Option<Self> {
         let segments = knots.len() - 1;
         let (start, width) = (knots[0], knots[segments] - knots[0]);
         let buckets = segments;
@@ -66,7 +66,7 @@ impl Locator {
     /// Segment of `u`, where `knots` are those the table was made for.
     #[inline]
     #[must_use]
-    pub fn segment(&self, knots: &[f64], u: f64) -> usize {
+    pub(crate) fn segment(&self, knots: &[f64], u: f64) -> usize {
         // A negative or NaN product becomes bucket 0.
         let bucket = ((u - self.start) * self.buckets_per_unit) as usize;
         let bucket = bucket.min(self.first.len() - 2);

@@ -11,8 +11,10 @@ use once_cell::race::OnceBox;
 use shapespline_polynomial::parallel;
 
 use crate::{
-    Boundary, CubicSegment, DataPolygon, Dimension, InputError, Locator, Parametrization, Side,
-    error::check_room, locate::search, parametrization::check_increasing,
+    Boundary, CubicSegment, DataPolygon, Dimension, InputError, Parametrization, Side,
+    error::check_room,
+    locate::{Locator, search},
+    parametrization::check_increasing,
 };
 
 /// What a parameter outside the knots means.
@@ -136,7 +138,7 @@ impl PiecewiseCubic {
         Ok(Self::through_checked(polygon, legs))
     }
 
-    /// [`Self::through`] for legs that [have room](crate::VectorLanes::have_room), as was found
+    /// [`Self::through`] for legs that [have room](crate::batch::VectorLanes::have_room), as was found
     /// while they were made: long ones are not read from memory once more.
     #[must_use]
     pub fn through_checked(polygon: &DataPolygon, legs: Vec<[DVec3; 2]>) -> Self {

@@ -3,7 +3,7 @@
 //! The ν-spline interpolant.
 
 use shapespline_geometry::{DataPolygon, InputError, PiecewiseCubic};
-use shapespline_search::{Spline, SplineFamily, Tension};
+use shapespline_search::{Spline, Tension, family::SplineFamily};
 
 use crate::system::NuSystem;
 

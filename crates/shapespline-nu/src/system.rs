@@ -6,7 +6,7 @@ use std::ops::Range;
 
 use shapespline_banded::{Row, Rows};
 use shapespline_geometry::{DVec3, DataPolygon, Span};
-use shapespline_search::{TensionSystem, try_each_row};
+use shapespline_search::family::{TensionSystem, try_each_row};
 
 /// The system (3.3)–(3.11) of paper 001 for the tangents `q_i`, each interior row divided by
 /// `h_{i−1} + h_i` so that its matrix has no unit: with `w = h_i/(h_{i−1} + h_i)`

@@ -9,7 +9,7 @@
 
 use std::collections::BTreeMap;
 
-use shapespline_criteria::{CachedChecker, Violations};
+use shapespline_criteria::{Violations, batch::CachedChecker};
 use shapespline_geometry::DVec3;
 
 /// Rounds of raising after which a segment that is still undecided is accepted: tension that doubles has

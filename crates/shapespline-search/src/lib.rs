@@ -30,7 +30,6 @@
 mod bending;
 mod doubts;
 mod error;
-mod family;
 mod fewer;
 mod fronts;
 mod group;
@@ -50,24 +49,35 @@ mod state;
 mod surroundings;
 mod system;
 mod tension;
+mod tension_family;
 
 pub use error::FitError;
-pub use family::{TensionFamily, tension_unit};
 pub use interpolant::Interpolant;
-#[cfg(feature = "serde")]
-pub use interpolant::polygon_of_stored;
 pub use many::{Collection, fit_many};
 pub use options::{SearchOptions, Strategy};
-pub use outcome::{Diagnostics, Fit, FittedLegs, Outcome, Phase, Status, Step};
-pub use pattern::TensionPattern;
-pub use search::{search, search_and_report};
-/// The systems that families solve.
-pub use shapespline_banded as banded;
+pub use outcome::{Diagnostics, Fit, Outcome, Phase, Status, Step};
 /// Criteria, tolerances and the report.
 pub use shapespline_criteria as criteria;
 /// Points, their parameters and ends, and the evaluation of curves.
 pub use shapespline_geometry as geometry;
-pub use solved::SolvedFamily;
-pub use spline::{Spline, SplineFamily};
-pub use system::{TensionSystem, try_each_row};
-pub use tension::{Tension, repeat_first_if_closed};
+pub use spline::Spline;
+pub use tension::Tension;
+
+use family::{FittedLegs, SolvedFamily, TensionFamily, TensionSystem, search_and_report};
+
+/// What the author of a family of curves needs: traits to implement, and the search itself.
+pub mod family {
+    #[cfg(feature = "serde")]
+    pub use crate::interpolant::polygon_of_stored;
+    pub use crate::{
+        outcome::FittedLegs,
+        search::{search, search_and_report},
+        solved::SolvedFamily,
+        spline::SplineFamily,
+        system::{TensionSystem, try_each_row},
+        tension::repeat_first_if_closed,
+        tension_family::{TensionFamily, tension_unit},
+    };
+    /// The systems that families solve.
+    pub use shapespline_banded as banded;
+}

@@ -7,11 +7,11 @@ use shapespline_geometry::DataPolygon;
 
 /// Nodes around segment `m` whose tension is to be raised, as offsets `−1, 0, 1, 2` from `m`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct TensionPattern {
+pub(crate) struct TensionPattern {
     /// Whether node `m + k − 1` is to be raised.
-    pub raise: [bool; 4],
+    pub(crate) raise: [bool; 4],
     /// Whether the tensions at nodes `m` and `m + 1` are to be kept equal (5.65).
-    pub equal: bool,
+    pub(crate) equal: bool,
 }
 
 impl TensionPattern {
@@ -24,7 +24,7 @@ impl TensionPattern {
     /// nodes of that segment, or all three nodes around (Lemma 5.9). A segment on which the curve
     /// stops needs shorter legs: its two nodes.
     #[must_use]
-    pub fn of(violations: Violations) -> Self {
+    pub(crate) fn of(violations: Violations) -> Self {
         const ALL: Violations = Violations::CONVEXITY_BETWEEN
             .and(Violations::GLOBAL_CONVEXITY)
             .and(Violations::TORSION)

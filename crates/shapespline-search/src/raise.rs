@@ -3,8 +3,9 @@
 //! Raising tension until no criterion fails: paper 001, (5.58)–(5.65).
 
 use crate::{
-    Phase, SearchOptions, Status, TensionFamily, TensionPattern,
+    Phase, SearchOptions, Status, TensionFamily,
     fronts::{Front, Fronts},
+    pattern::TensionPattern,
     state::{AROUND, State, on_all_sides},
 };
 
@@ -205,7 +206,7 @@ mod tests {
     use shapespline_geometry::{Boundary, DVec3, DataPolygon, Parametrization};
 
     use super::*;
-    use crate::{Diagnostics, Strategy, search};
+    use crate::{Diagnostics, Strategy, search::search};
 
     #[test]
     fn runs_join_over_the_seam_of_closed_data_only() {

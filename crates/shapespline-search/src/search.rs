@@ -4,7 +4,10 @@
 
 use std::ops::ControlFlow;
 
-use shapespline_criteria::{BatchChecker, CachedChecker, Checker, ShapeReport, Violations};
+use shapespline_criteria::{
+    Checker, ShapeReport, Violations,
+    batch::{BatchChecker, CachedChecker},
+};
 use shapespline_geometry::DataPolygon;
 
 use crate::{

@@ -88,7 +88,7 @@ impl<F: SplineFamily> TryFrom<Stored<F::Curve>> for Spline<F> {
 
     fn try_from(stored: Stored<F::Curve>) -> Result<Self, InputError> {
         let Stored { curve, tension, boundary } = stored;
-        let polygon = crate::polygon_of_stored(curve.cubic(), &tension, boundary)?;
+        let polygon = crate::family::polygon_of_stored(curve.cubic(), &tension, boundary)?;
         Ok(Self { curve, tension, polygon })
     }
 }

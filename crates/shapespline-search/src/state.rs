@@ -8,7 +8,7 @@ use std::{
 };
 
 use rayon::prelude::*;
-use shapespline_criteria::{CachedChecker, Violations};
+use shapespline_criteria::{Violations, batch::CachedChecker};
 use shapespline_geometry::DVec3;
 
 use crate::{Diagnostics, Outcome, Phase, Status, Step, TensionFamily, doubts::Doubts};

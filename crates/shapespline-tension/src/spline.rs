@@ -3,7 +3,7 @@
 //! The C² tension cubic interpolant.
 
 use shapespline_geometry::{DataPolygon, InputError, PiecewiseCubic, ReparametrizedCubic};
-use shapespline_search::{Spline, SplineFamily, Tension};
+use shapespline_search::{Spline, Tension, family::SplineFamily};
 
 use crate::system::ManniSystem;
 

@@ -6,7 +6,7 @@ use std::ops::Range;
 
 use shapespline_banded::{Row, Rows};
 use shapespline_geometry::{DVec3, DataPolygon, Span};
-use shapespline_search::{TensionSystem, tension_unit, try_each_row};
+use shapespline_search::family::{TensionSystem, tension_unit, try_each_row};
 
 /// The system (3.7)–(3.8) of paper 000 for the tangents `T_i`, each row divided by
 /// `h_{i−1}(h_iλ⁰_i)² + h_i(h_{i−1}λ¹_{i−1})²` so that its matrix has no unit (see the crate's page).

@@ -19,15 +19,15 @@ use shapespline_geometry::{DVec3, DataPolygon};
 ///    The criteria then hold in the limit (paper 001, Theorems 4.7–4.13; paper 000, Lemmas 4.1–4.3).
 /// 2. **Say how tension makes tangents.** If the tangents solve a tridiagonal system, write its row
 ///    `i`, divided so that it has no unit and is strictly diagonally dominant, as
-///    [`shapespline_banded::Rows`], and implement [`crate::TensionSystem`] (`NuSystem` and `ManniSystem` are
+///    [`shapespline_banded::Rows`], and implement [`TensionSystem`](crate::family::TensionSystem) (`NuSystem` and `ManniSystem` are
 ///    some 100 lines each). If a tangent depends on its neighbours only, implement this trait itself
 ///    (`Handles` of Catmull–Rom).
 /// 3. **Say where pulls are equal** ([`TensionFamily::tension_unit`]) if equal tension does not already
 ///    make the legs of neighbouring nodes alike.
-/// 4. **The curve** of a family with a system: implement [`crate::SplineFamily`], and [`crate::Spline`] is it, with
+/// 4. **The curve** of a family with a system: implement [`SplineFamily`](crate::family::SplineFamily), and [`crate::Spline`] is it, with
 ///    `shape_preserving`, report and serialisation. Else: a struct with a [`shapespline_geometry::Curve`], the
 ///    tension and the polygon that implements [`crate::Interpolant`], whose `shape_preserving` is
-///    [`crate::search_and_report`] and the assembly. `fit_many`, evaluation and arc length follow.
+///    [`search_and_report`](crate::family::search_and_report) and the assembly. `fit_many`, evaluation and arc length follow.
 /// 5. **Tests**: add the family to `tests/rust/src/families.rs`. Every property there — no violation
 ///    on thousands of polygons, invariance, limits, bad input — then runs for it too. Plant
 ///    an answer of your own besides: a curve the family reproduces.

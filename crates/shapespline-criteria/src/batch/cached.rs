@@ -4,10 +4,14 @@
 
 use std::{cell::Cell, ops::Range};
 
-use shapespline_geometry::{DVec3, DataPolygon, SegmentBatch, VectorLanes};
+use shapespline_geometry::{
+    DVec3, DataPolygon,
+    batch::{SegmentBatch, VectorLanes},
+};
 use shapespline_polynomial::parallel;
 
-use crate::{BatchChecker, BatchRequirements, Criterion, Requirements, Violations, rounding::Lean};
+use super::{BatchChecker, BatchRequirements};
+use crate::{Criterion, Requirements, Violations, rounding::Lean};
 
 /// Windows that are kept: a change of tension is felt over some 60 segments, in two windows or three.
 const KEPT: usize = 4;

@@ -3,12 +3,18 @@
 //! The checker that goes through a polygon batch by batch: for local methods, and for a single check
 //! that keeps nothing.
 
+mod cached;
+
 use std::ops::Range;
 
-use shapespline_geometry::{DVec3, DataPolygon, SegmentBatch, VectorLanes};
+pub use cached::CachedChecker;
+use shapespline_geometry::{
+    DVec3, DataPolygon,
+    batch::{SegmentBatch, VectorLanes},
+};
 
 use crate::{
-    CachedChecker, Criteria, Criterion, Requirements, Tolerances, Violations,
+    Criteria, Criterion, Requirements, Tolerances, Violations,
     regular::leads_along,
     rounding::{Coarse, Lean, leg_error, sum},
     violations::{Cones, SegmentGeometry, unproved, violations},
