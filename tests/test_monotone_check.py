@@ -2,8 +2,9 @@
 
 """`check_monotone`: monotonicity and convexity of any library's functions, exactly."""
 
-import itertools
 import json
+from fractions import Fraction
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -80,6 +81,27 @@ def test_convexity_agrees_with_sampling(rng, maker, rough):
         assert given.counts()["convexity"][1] == 8
 
 
+def test_signs_near_zero_are_those_of_exact_fractions(rng):
+    """Slopes ``(t - a)² - b`` of b near zero, whose least value fractions know."""
+    verdicts = {True: 0, False: 0, None: 0}
+    for exponent in rng.uniform(-18, -12, 400):
+        a, b = rng.uniform(0.2, 0.8), rng.choice([-1, 1]) * 10**exponent
+        slope = np.array([a * a, a * a - a, (1 - a) ** 2]) - b
+        c = np.cumsum([0.0, *(slope / 3)])
+        control = np.column_stack([np.linspace(0, 1, 4), c])[None]
+        f = ss.PiecewiseBezier(control, [0.0, 1.0])
+        (record,) = ss.check_monotone([0, 1], [c[0], c[3]], f, tolerance=0.0).segments
+        first, middle, last = (Fraction(after) - Fraction(before) for before, after in pairwise(c))
+        least = (first * last - middle**2) / (first - 2 * middle + last) * 3 / Fraction(c[3])
+        assert abs(record.margin - least) < 1e-12
+        verdicts[record.satisfied] += 1
+        if record.satisfied is None:
+            assert abs(least) < 1e-13
+        else:
+            assert record.satisfied == (least >= 0)
+    assert min(verdicts.values()) > 20, verdicts
+
+
 def test_a_function_that_jumps_is_refused():
     """It runs through the data from the right, and rises wherever it has a slope."""
     for size, refused in ((-0.5, True), (0.5, True), (1e-12, False)):
@@ -104,7 +126,7 @@ def test_rounding_in_a_narrow_piece_hides_nothing_but_itself(dip):
     ]
     breaks = [0.0, low, high, 1.0]
     t = np.linspace(0, 1, 4)
-    across = [a * (1 - t) + b * t for a, b in itertools.pairwise(breaks)]
+    across = [a * (1 - t) + b * t for a, b in pairwise(breaks)]
     f = ss.PiecewiseBezier(np.stack([across, control], axis=2), breaks)
     (record,) = ss.check_monotone([0, 1], [1000, 1001], f).segments
     assert record.margin < -1

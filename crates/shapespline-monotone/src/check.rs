@@ -227,7 +227,9 @@ impl<'a> Function<'a> {
 
     /// A part of a polynomial on a piece.
     fn cell(&self, k: usize, ends: [f64; 2], polynomial: &[f64], rounding: f64) -> Cell {
-        Cell { c: part(polynomial.to_vec(), ends.map(|x| self.local(k, x))), ends, rounding }
+        let own = ends.map(|x| self.local(k, x));
+        let cut = if own == [0.0, 1.0] { 0.0 } else { cutting(polynomial) };
+        Cell { c: part(polynomial.to_vec(), own), ends, rounding, cut }
     }
 
     /// The width of a piece in scaled units.
@@ -250,13 +252,14 @@ impl<'a> Function<'a> {
 
     fn level(&self, segment: usize, tolerance: f64) -> MonotoneRecord {
         let level = self.data.units().rise().scale(self.y[segment]);
-        let off = self.pieces(segment).flat_map(|(k, ends)| {
-            let values = self.cell(k, ends, self.piece(k), 0.0).c;
-            values.into_iter().map(move |c| (c - level).abs())
+        let cells = self.pieces(segment).flat_map(|(k, ends)| {
+            let distance = |of: &dyn Fn(f64) -> f64| {
+                let c: Vec<f64> = self.piece(k).iter().map(|c| of(*c) / self.extent).collect();
+                self.cell(k, ends, &c, self.rounding / self.extent)
+            };
+            [distance(&|c| level - c), distance(&|c| c - level)]
         });
-        let margin = 0.0 - off.fold(0.0, f64::max) / self.extent;
-        let certain = margin + self.rounding / self.extent;
-        Least { margin, location: self.x[segment], certain }.record(segment, tolerance)
+        Least::of(cells.collect(), self.x[segment], tolerance).record(segment, tolerance)
     }
 
     fn convexity(&self, segment: usize, sign: f64, tolerance: f64) -> MonotoneRecord {
@@ -285,13 +288,26 @@ struct Cell {
     ends: [f64; 2],
     /// Bound of the rounding of its values.
     rounding: f64,
+    /// Bound of the rounding of the cuts it comes from; without one the signs of its coefficients are exact.
+    cut: f64,
+}
+
+/// Bound of the rounding of cutting a polynomial.
+fn cutting(c: &[f64]) -> f64 {
+    4.0 * c.len() as f64 * f64::EPSILON * c.iter().fold(0.0, |size: f64, c| size.max(c.abs()))
 }
 
 impl Cell {
+    /// A bound of the values from below, but for the rounding of cuts.
+    fn low(&self) -> f64 {
+        self.c.iter().copied().fold(f64::INFINITY, f64::min)
+    }
+
     fn halves(&self) -> [Self; 2] {
         let [start, end] = self.ends;
         let middle = f64::midpoint(start, end);
-        let half = |c, ends| Self { c, ends, rounding: self.rounding };
+        let cut = self.cut + cutting(&self.c);
+        let half = |c, ends| Self { c, ends, rounding: self.rounding, cut };
         let (left, right) = split(self.c.clone(), 0.5);
         [half(left, [start, middle]), half(right, [middle, end])]
     }
@@ -302,29 +318,29 @@ impl Cell {
 struct Least {
     margin: f64,
     location: f64,
-    /// The least that is certain: value and bound of its rounding.
+    /// No value is less.
+    low: f64,
+    /// The least value and bound of its rounding: what is certain to be reached.
     certain: f64,
 }
 
 impl Least {
     /// Halves the parts on which the least value could be smaller than the least so far, by more than it counts.
     fn of(mut cells: Vec<Cell>, start: f64, tolerance: f64) -> Self {
-        let mut least = Self { margin: f64::INFINITY, location: start, certain: f64::INFINITY };
+        let (margin, location) = (f64::INFINITY, start);
+        let mut least = Self { margin, location, low: f64::INFINITY, certain: f64::INFINITY };
         if cells.iter().flat_map(|cell| &cell.c).any(|c| !c.is_finite()) {
             return Self { margin: f64::NAN, ..least };
         }
-        for _ in 0..HALVINGS {
+        for halving in 0..=HALVINGS {
             for side in [0, 1] {
                 cells.iter().for_each(|cell| least.lower(cell, side));
             }
-            cells.retain(|cell| {
-                let low = cell.c.iter().copied().fold(f64::INFINITY, f64::min);
-                let size = cell.c.iter().fold(0.0, |size: f64, c| size.max(c.abs()));
-                // The rounding of halving alone must not keep parts alive.
-                let rounding = 4.0 * cell.c.len() as f64 * f64::EPSILON * size;
-                let counts = (0.1 * tolerance.max(1e-12)).max(rounding);
-                low < least.margin - counts || low + cell.rounding < least.certain - counts
-            });
+            cells.retain(|cell| least.could_fall(cell, tolerance));
+            if halving == HALVINGS {
+                cells.iter().for_each(|cell| least.low = least.low.min(cell.low() - cell.cut));
+                break;
+            }
             if cells.is_empty() {
                 break;
             }
@@ -336,6 +352,7 @@ impl Least {
         least
     }
 
+    /// Notes a value at an end of a part.
     fn lower(&mut self, cell: &Cell, side: usize) {
         let value = cell.c[side * (cell.c.len() - 1)];
         if value <= self.margin {
@@ -344,10 +361,23 @@ impl Least {
         self.certain = self.certain.min(value + cell.rounding);
     }
 
+    /// Whether a part could have a value that counts; if not, its bound from below is noted.
+    fn could_fall(&mut self, cell: &Cell, tolerance: f64) -> bool {
+        let (low, cut) = (cell.low(), cell.cut);
+        // The rounding of cutting alone must not keep parts alive.
+        let counts = (0.1 * tolerance).max(cut);
+        let open = low < -tolerance && -tolerance <= self.margin && low < self.margin - cut;
+        let falls = low < self.margin - counts || low + cell.rounding < self.certain - counts;
+        if !(falls || open) {
+            self.low = self.low.min(low - cut);
+        }
+        falls || open
+    }
+
     fn record(self, segment: usize, tolerance: f64) -> MonotoneRecord {
-        let Self { margin, location, certain } = self;
+        let Self { margin, location, low, certain } = self;
         let satisfied =
-            if certain < -tolerance { Some(false) } else { (margin >= -tolerance).then_some(true) };
+            if certain < -tolerance { Some(false) } else { (low >= -tolerance).then_some(true) };
         MonotoneRecord { segment, satisfied, margin, location }
     }
 }

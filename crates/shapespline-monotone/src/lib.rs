@@ -9,6 +9,7 @@
 //! - [`MonotoneQuintic`]: C², global. On every segment a quintic; slopes and second derivatives at the knots are
 //!   chosen so that a bending energy is least.
 //! - [`smooth_monotone`]: noisy data, smoothed by monotone cubics.
+//! - [`check_monotone`]: whether any piecewise polynomial rises, falls and bends as its data do.
 //! - [`bezier_like`]: the curves themselves, in any dimension.
 //!
 //! # Guarantee
