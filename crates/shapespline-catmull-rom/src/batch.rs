@@ -197,7 +197,7 @@ impl BatchHandles {
             let (q, p) = (at_end[j], at_start[j + 1]);
             // In an inflecting coplanar segment the legs decide where it inflects: one factor a node.
             let one = continuity == Continuity::C1
-                || required[j].and(required[j + 1]).any(Requirements::SPLIT_COPLANARITY);
+                || required[j].union(required[j + 1]).intersects(Requirements::SPLIT_COPLANARITY);
             let least = smaller(q, p);
             (at_end[j], at_start[j + 1]) = if one { (least, least) } else { (q, p) };
         }

@@ -12,9 +12,9 @@ use shapespline_geometry::{DVec3, length};
 /// What is asked of `ω` along the binormal vectors at both nodes of a segment, at both: convexity, of which
 /// global convexity follows, and inflection.
 const BETWEEN: Requirements = Requirements::CONVEXITY
-    .and(Requirements::GLOBAL_CONVEXITY)
-    .and(Requirements::INFLECTION)
-    .and(Requirements::TURNING_PAIR);
+    .union(Requirements::GLOBAL_CONVEXITY)
+    .union(Requirements::INFLECTION)
+    .union(Requirements::TURNING_PAIR);
 
 /// The least of some bounds, as a fraction: one division in the end instead of one each.
 struct Least {
@@ -46,16 +46,16 @@ pub(crate) fn of_signs(
 ) -> [f64; 2] {
     let (x, first, last) = (a.cross(c), a.cross(chord), chord.cross(c));
     let (xp, xq) = (x.dot(p), x.dot(q));
-    let between = calls.any(BETWEEN);
+    let between = calls.intersects(BETWEEN);
     // (αP − qX)·n and (βP' − pX)·n must keep the signs they have at q = p = 0.
     let on_q = Least::NONE
-        .and(between | calls.any(Requirements::TURNING_AT_START), first.dot(p), xp)
+        .and(between | calls.intersects(Requirements::TURNING_AT_START), first.dot(p), xp)
         .and(between, first.dot(q), xq)
-        .and(calls.any(Requirements::TURNING_BEFORE), first.dot(before), x.dot(before));
+        .and(calls.intersects(Requirements::TURNING_BEFORE), first.dot(before), x.dot(before));
     let on_p = Least::NONE
-        .and(between | calls.any(Requirements::TURNING_AT_END), last.dot(q), xq)
+        .and(between | calls.intersects(Requirements::TURNING_AT_END), last.dot(q), xq)
         .and(between, last.dot(p), xp)
-        .and(calls.any(Requirements::TURNING_AFTER), last.dot(after), x.dot(after));
+        .and(calls.intersects(Requirements::TURNING_AFTER), last.dot(after), x.dot(after));
     [on_p.numerator / on_p.denominator, on_q.numerator / on_q.denominator]
 }
 
@@ -76,10 +76,10 @@ pub(crate) fn of_lines(
         let bound = chord / (along + cotangent * length(leg - direction * along));
         if bound > 0.0 { bound } else { f64::INFINITY }
     };
-    if calls.any(Requirements::LINE_AT_START) {
+    if calls.intersects(Requirements::LINE_AT_START) {
         (p, q) = (p.min(own(a)), q.min(other(c)));
     }
-    if calls.any(Requirements::LINE_AT_END) {
+    if calls.intersects(Requirements::LINE_AT_END) {
         (p, q) = (p.min(other(a)), q.min(own(c)));
     }
     [p, q]
@@ -88,5 +88,5 @@ pub(crate) fn of_lines(
 /// Whether a segment has a bound by [`of_lines`].
 #[inline]
 pub(crate) fn has_lines(calls: Requirements) -> bool {
-    calls.any(Requirements::of(Criterion::Collinearity))
+    calls.intersects(Requirements::of(Criterion::Collinearity))
 }

@@ -60,14 +60,14 @@ impl<'a> Checker<'a> {
                 (
                     at(-1),
                     Requirements::AT_END
-                        .and(Requirements::TURNING_AFTER)
-                        .and(Requirements::OF_BOTH),
+                        .union(Requirements::TURNING_AFTER)
+                        .union(Requirements::OF_BOTH),
                 ),
                 (
                     at(0),
                     Requirements::AT_START
-                        .and(Requirements::TURNING_BEFORE)
-                        .and(Requirements::OF_BOTH),
+                        .union(Requirements::TURNING_BEFORE)
+                        .union(Requirements::OF_BOTH),
                 ),
                 (at(1), Requirements::TURNING_BEFORE),
             ];
@@ -82,10 +82,10 @@ impl<'a> Checker<'a> {
 
     /// Takes requirements from a segment, which then has to be regular in any case.
     fn leave_out(&mut self, segment: usize, required: Requirements) {
-        let left = self.required[segment].without(required);
+        let left = self.required[segment].difference(required);
         let regular = Requirements::of(Criterion::Regular);
-        let implied = left.any(Requirements::IMPLY_REGULAR) || left.any(regular);
-        self.required[segment] = if implied { left } else { left.and(Requirements::REGULAR) };
+        let implied = left.intersects(Requirements::IMPLY_REGULAR) || left.intersects(regular);
+        self.required[segment] = if implied { left } else { left.union(Requirements::REGULAR) };
     }
 
     /// Takes some segments (ascending) to be straight by construction: nothing that turns is asked of them,
@@ -102,7 +102,7 @@ impl<'a> Checker<'a> {
             let flags = [Requirements::STRAIGHT_AFTER, Requirements::STRAIGHT_BEFORE];
             for ((beside, node), flag) in [before, after].into_iter().zip(nodes).zip(flags) {
                 if let Some(k) = beside.filter(|&k| !is_straight(k) && !free.contains(&node)) {
-                    self.required[k] = self.required[k].and(flag);
+                    self.required[k] = self.required[k].union(flag);
                 }
             }
         }
@@ -197,7 +197,7 @@ impl<'a> Checker<'a> {
 
     pub(crate) fn record_of(&self, segment: usize, cubic: &Cubic, criterion: Criterion) -> Record {
         let required = self.required[segment];
-        let applicable = required.any(Requirements::of(criterion));
+        let applicable = required.intersects(Requirements::of(criterion));
         let mut record = Record {
             segment,
             criterion,
@@ -221,11 +221,11 @@ impl<'a> Checker<'a> {
             Criterion::Regular => regular::margin(&s, required),
         };
         let of = Violations::of(criterion);
-        record.satisfied = !self.judge(segment, cubic, Lean::Against).any(of);
+        record.satisfied = !self.judge(segment, cubic, Lean::Against).intersects(of);
         // The proof decides on which side of zero the margin lies.
         record.margin = if record.satisfied {
             margin.value.max(f64::MIN_POSITIVE)
-        } else if self.judge(segment, cubic, Lean::For).any(of) {
+        } else if self.judge(segment, cubic, Lean::For).intersects(of) {
             margin.value.min(0.0)
         } else {
             0.0
@@ -269,11 +269,11 @@ impl<'a> Checker<'a> {
             let [open, violated] = verdict(i);
             for criterion in Criterion::ALL {
                 let of = Violations::of(criterion);
-                if violated.any(of) {
+                if violated.intersects(of) {
                     report.counts[criterion as usize].violated += 1;
                     report.violations.push(record(i, criterion));
-                } else if open.any(of) {
-                    let interval = self.interval(i, open.only(of));
+                } else if open.intersects(of) {
+                    let interval = self.interval(i, open.intersection(of));
                     report.undecided.push(Undecided { segment: i, criterion, interval });
                 }
             }
@@ -337,22 +337,22 @@ impl Violations {
     #[must_use]
     pub const fn of(criterion: Criterion) -> Self {
         match criterion {
-            Criterion::Convexity => {
-                Self::CONVEXITY_AT_START.and(Self::CONVEXITY_AT_END).and(Self::CONVEXITY_BETWEEN)
-            }
-            Criterion::Inflection => Self::INFLECTION_AT_START.and(Self::INFLECTION_AT_END),
-            Criterion::Turning => Self::TURNING_AT_START.and(Self::TURNING_AT_END),
+            Criterion::Convexity => Self::CONVEXITY_AT_START
+                .union(Self::CONVEXITY_AT_END)
+                .union(Self::CONVEXITY_BETWEEN),
+            Criterion::Inflection => Self::INFLECTION_AT_START.union(Self::INFLECTION_AT_END),
+            Criterion::Turning => Self::TURNING_AT_START.union(Self::TURNING_AT_END),
             Criterion::Torsion => Self::TORSION,
             Criterion::Coplanarity => Self::COPLANARITY_AT_START
-                .and(Self::COPLANARITY_AT_END)
-                .and(Self::COPLANARITY_BETWEEN)
-                .and(Self::COPLANARITY_SPLIT),
+                .union(Self::COPLANARITY_AT_END)
+                .union(Self::COPLANARITY_BETWEEN)
+                .union(Self::COPLANARITY_SPLIT),
             Criterion::Collinearity => Self::LINE_AT_START
-                .and(Self::LINE_AFTER_START)
-                .and(Self::LINE_INSIDE_START)
-                .and(Self::LINE_AT_END)
-                .and(Self::LINE_BEFORE_END)
-                .and(Self::LINE_INSIDE_END),
+                .union(Self::LINE_AFTER_START)
+                .union(Self::LINE_INSIDE_START)
+                .union(Self::LINE_AT_END)
+                .union(Self::LINE_BEFORE_END)
+                .union(Self::LINE_INSIDE_END),
             Criterion::GlobalConvexity => Self::GLOBAL_CONVEXITY,
             Criterion::Regular => Self::NOT_REGULAR,
         }

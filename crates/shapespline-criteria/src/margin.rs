@@ -103,7 +103,7 @@ pub(crate) fn turning(s: &SegmentGeometry, required: Requirements) -> Margin {
 
 pub(crate) fn torsion(s: &SegmentGeometry, required: Requirements) -> Margin {
     let size = s.a.length() * s.chord.length() * s.c.length();
-    let sign = if required.any(Requirements::RIGHT_TORSION) { 1.0 } else { -1.0 };
+    let sign = if required.intersects(Requirements::RIGHT_TORSION) { 1.0 } else { -1.0 };
     // Its sign is the same all over the segment.
     Margin { value: sign * ratio(s.determinant(), size), at: 0.5 }
 }
@@ -115,7 +115,7 @@ pub(crate) fn coplanarity(s: &SegmentGeometry, required: Requirements, cones: &C
         let margin = |normal| cone_margin(epsilon, normal, (from, to), omega);
         margin(p).least(margin(q))
     };
-    if required.any(Requirements::COPLANARITY) {
+    if required.intersects(Requirements::COPLANARITY) {
         over(0.0, 1.0)
     } else {
         let [left, right] = cones.parts;
@@ -128,8 +128,11 @@ pub(crate) fn collinearity(s: &SegmentGeometry, required: Requirements, cones: &
     let over = |line: DVec3, from: f64, to: f64| {
         cone_margin(epsilon, line, (from, to), part(s.tangent_quadratic(), from, to))
     };
-    let start = required.any(Requirements::LINE_AT_START).then(|| over(lines[0], 0.0, LINE_PART));
-    let end = required.any(Requirements::LINE_AT_END).then(|| over(lines[1], 1.0 - LINE_PART, 1.0));
+    let start =
+        required.intersects(Requirements::LINE_AT_START).then(|| over(lines[0], 0.0, LINE_PART));
+    let end = required
+        .intersects(Requirements::LINE_AT_END)
+        .then(|| over(lines[1], 1.0 - LINE_PART, 1.0));
     [start, end]
         .into_iter()
         .flatten()

@@ -79,7 +79,7 @@ impl Hodograph {
         let (a, chord, c) = (s.a.length(), s.chord.length(), s.c.length());
         let [first, middle, last] = s.tangent_quadratic();
         let least =
-            if required.any(Requirements::LEGS) { chord * (NO_LEG / ROUNDING) } else { 0.0 };
+            if required.intersects(Requirements::LEGS) { chord * (NO_LEG / ROUNDING) } else { 0.0 };
         let end = |leg: f64| leg.max(least);
         Self { legs: vec![first, middle, last], sizes: vec![end(a), a + chord + c, end(c)] }
     }

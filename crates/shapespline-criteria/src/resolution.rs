@@ -43,7 +43,7 @@ pub(crate) fn leave_known(
         };
         let mut kept = required[j];
         let mut leave_out = |what: bool, required: Requirements| {
-            kept = if what { kept.without(required) } else { kept };
+            kept = if what { kept.difference(required) } else { kept };
         };
         leave_out(nodes[1].is_straight, Requirements::AT_START);
         leave_out(nodes[2].is_straight, Requirements::AT_END);

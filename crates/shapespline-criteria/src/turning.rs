@@ -41,13 +41,13 @@ pub(crate) fn conditions(
     let size = leg * (chord.length() + far);
     let along = move |n: DVec3, sign: f64| (sign * bend.dot(n), size * n.length());
     let sign = move |alike: Requirements, apart: Requirements| {
-        f64::from(i8::from(required.any(alike)) - i8::from(required.any(apart)))
+        f64::from(i8::from(required.intersects(alike)) - i8::from(required.intersects(apart)))
     };
     let turns = [
-        (own, f64::from(u8::from(required.any(asked)))),
+        (own, f64::from(u8::from(required.intersects(asked)))),
         (
             other,
-            if required.any(asked) {
+            if required.intersects(asked) {
                 sign(Requirements::TURNS_ALIKE, Requirements::TURNS_APART)
             } else {
                 0.0
@@ -57,5 +57,5 @@ pub(crate) fn conditions(
     ];
     let between = (side.dot(own), leg * chord.length() * own.length());
     let turns = turns.into_iter().filter(|(_, sign)| *sign != 0.0).map(move |(n, s)| along(n, s));
-    turns.chain(required.any(asked).then_some(between))
+    turns.chain(required.intersects(asked).then_some(between))
 }

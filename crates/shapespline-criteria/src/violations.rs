@@ -2,6 +2,7 @@
 
 //! The verdict on one segment: which of the exact conditions fail.
 
+use bitflags::bitflags;
 use glam::DVec3;
 use shapespline_geometry::{DataPolygon, normalized_scale};
 use shapespline_polynomial::quadratic;
@@ -15,106 +16,73 @@ use crate::{
     rounding::{Coarse, Lean, Rounded, Signs, UNIT, leg_error, sum},
 };
 
-/// Conditions that fail on a segment `m`, or are not proved to hold, as the failure sets (5.40)–(5.57) of
-/// paper 001 (corrected by E3) and Theorems 13.6–13.11 of paper 002 distinguish them: the place of a failure
-/// decides which tensions can mend it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Violations(u32);
+bitflags! {
+    /// Conditions that fail on a segment `m`, or are not proved to hold, as the failure sets (5.40)–(5.57) of
+    /// paper 001 (corrected by E3) and Theorems 13.6–13.11 of paper 002 distinguish them: the place of a failure
+    /// decides which tensions can mend it.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+    #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+    pub struct Violations: u32 {
+        /// Convexity, at node m: `ω(u_m)·P_n ≤ 0` (K₀₁).
+        const CONVEXITY_AT_START = 1 << 0;
+        /// Convexity, at node m+1 (K₀₂).
+        const CONVEXITY_AT_END = 1 << 1;
+        /// Convexity, between the nodes (K₀₃).
+        const CONVEXITY_BETWEEN = 1 << 2;
+        /// Inflection, at node m.
+        const INFLECTION_AT_START = 1 << 3;
+        /// Inflection, at node m+1.
+        const INFLECTION_AT_END = 1 << 4;
+        /// Torsion (I₁₁).
+        const TORSION = 1 << 5;
+        /// Coplanarity, at node m (M₀₁, M₁₁).
+        const COPLANARITY_AT_START = 1 << 6;
+        /// Coplanarity, at node m+1 (M₀₂, M₂₂).
+        const COPLANARITY_AT_END = 1 << 7;
+        /// Coplanarity of a convex quadruple, between the nodes (M₀₃).
+        const COPLANARITY_BETWEEN = 1 << 8;
+        /// Coplanarity of an inflecting quadruple, between the nodes (M₁₂, M₁₃, M₂₁, M₂₃).
+        const COPLANARITY_SPLIT = 1 << 9;
+        /// Collinearity at node m, at the node itself (J₀₁).
+        const LINE_AT_START = 1 << 10;
+        /// Collinearity at node m, at the far end of its interval (J₂₁).
+        const LINE_AFTER_START = 1 << 11;
+        /// Collinearity at node m, inside its interval (J₂₂).
+        const LINE_INSIDE_START = 1 << 12;
+        /// Collinearity at node m+1, at the node itself (J₀₁).
+        const LINE_AT_END = 1 << 13;
+        /// Collinearity at node m+1, at the far end of its interval (J₁₁).
+        const LINE_BEFORE_END = 1 << 14;
+        /// Collinearity at node m+1, inside its interval (J₁₂).
+        const LINE_INSIDE_END = 1 << 15;
+        /// Global convexity, anywhere on the segment.
+        const GLOBAL_CONVEXITY = 1 << 16;
+        /// Turning, at node m.
+        const TURNING_AT_START = 1 << 17;
+        /// Turning, at node m+1.
+        const TURNING_AT_END = 1 << 18;
+        /// The curve stops somewhere on the segment.
+        const NOT_REGULAR = 1 << 19;
+    }
+}
 
 impl Violations {
-    /// Convexity, at node m: `ω(u_m)·P_n ≤ 0` (K₀₁).
-    pub const CONVEXITY_AT_START: Self = Self(1);
-    /// Convexity, at node m+1 (K₀₂).
-    pub const CONVEXITY_AT_END: Self = Self(2);
-    /// Convexity, between the nodes (K₀₃).
-    pub const CONVEXITY_BETWEEN: Self = Self(4);
-    /// Inflection, at node m.
-    pub const INFLECTION_AT_START: Self = Self(8);
-    /// Inflection, at node m+1.
-    pub const INFLECTION_AT_END: Self = Self(16);
-    /// Torsion (I₁₁).
-    pub const TORSION: Self = Self(32);
-    /// Coplanarity, at node m (M₀₁, M₁₁).
-    pub const COPLANARITY_AT_START: Self = Self(64);
-    /// Coplanarity, at node m+1 (M₀₂, M₂₂).
-    pub const COPLANARITY_AT_END: Self = Self(128);
-    /// Coplanarity of a convex quadruple, between the nodes (M₀₃).
-    pub const COPLANARITY_BETWEEN: Self = Self(256);
-    /// Coplanarity of an inflecting quadruple, between the nodes (M₁₂, M₁₃, M₂₁, M₂₃).
-    pub const COPLANARITY_SPLIT: Self = Self(512);
-    /// Collinearity at node m, at the node itself (J₀₁).
-    pub const LINE_AT_START: Self = Self(1024);
-    /// Collinearity at node m, at the far end of its interval (J₂₁).
-    pub const LINE_AFTER_START: Self = Self(2048);
-    /// Collinearity at node m, inside its interval (J₂₂).
-    pub const LINE_INSIDE_START: Self = Self(4096);
-    /// Collinearity at node m+1, at the node itself (J₀₁).
-    pub const LINE_AT_END: Self = Self(8192);
-    /// Collinearity at node m+1, at the far end of its interval (J₁₁).
-    pub const LINE_BEFORE_END: Self = Self(16384);
-    /// Collinearity at node m+1, inside its interval (J₁₂).
-    pub const LINE_INSIDE_END: Self = Self(32768);
-    /// Global convexity, anywhere on the segment.
-    pub const GLOBAL_CONVEXITY: Self = Self(65536);
-    /// Turning, at node m.
-    pub const TURNING_AT_START: Self = Self(1 << 17);
-    /// Turning, at node m+1.
-    pub const TURNING_AT_END: Self = Self(1 << 18);
-    /// The curve stops somewhere on the segment.
-    pub const NOT_REGULAR: Self = Self(1 << 19);
-
     /// Conditions at node m alone.
     pub(crate) const AT_START: Self = Self::CONVEXITY_AT_START
-        .and(Self::INFLECTION_AT_START)
-        .and(Self::TURNING_AT_START)
-        .and(Self::COPLANARITY_AT_START)
-        .and(Self::LINE_AT_START);
+        .union(Self::INFLECTION_AT_START)
+        .union(Self::TURNING_AT_START)
+        .union(Self::COPLANARITY_AT_START)
+        .union(Self::LINE_AT_START);
     /// Conditions at node m+1 alone.
     pub(crate) const AT_END: Self = Self::CONVEXITY_AT_END
-        .and(Self::INFLECTION_AT_END)
-        .and(Self::TURNING_AT_END)
-        .and(Self::COPLANARITY_AT_END)
-        .and(Self::LINE_AT_END);
-
-    /// Whether nothing fails.
-    #[inline]
-    #[must_use]
-    pub fn is_empty(self) -> bool {
-        self.0 == 0
-    }
-
-    /// Whether any violation of `other` is among these.
-    #[inline]
-    #[must_use]
-    pub fn any(self, other: Self) -> bool {
-        self.0 & other.0 != 0
-    }
-
-    /// Whether all violations of `other` are among these.
-    #[must_use]
-    pub fn contains(self, other: Self) -> bool {
-        other.0 & !self.0 == 0
-    }
-
-    /// Those that are among others.
-    #[must_use]
-    pub fn only(self, other: Self) -> Self {
-        Self(self.0 & other.0)
-    }
-
-    /// The violations together.
-    #[inline]
-    #[must_use]
-    pub const fn and(self, other: Self) -> Self {
-        Self(self.0 | other.0)
-    }
+        .union(Self::INFLECTION_AT_END)
+        .union(Self::TURNING_AT_END)
+        .union(Self::COPLANARITY_AT_END)
+        .union(Self::LINE_AT_END);
 
     #[inline]
     fn add(&mut self, violation: Self, fails: bool) {
-        if fails {
-            self.0 |= violation.0;
-        }
+        self.set(violation, fails | self.contains(violation));
     }
 }
 
@@ -230,7 +198,7 @@ impl Cones {
         tolerances: &Tolerances,
     ) -> Self {
         let binormals = [before.cross(own), own.cross(after)];
-        let parts = if required.any(Requirements::SPLIT_COPLANARITY) {
+        let parts = if required.intersects(Requirements::SPLIT_COPLANARITY) {
             let flip = inflection_parameter_between(polygon, [segment; 2], binormals);
             [0.5 * flip, 0.5 * (1.0 + flip)]
         } else {
@@ -267,7 +235,7 @@ pub(crate) fn unproved(s: &SegmentGeometry, bounds: Coarse, required: u32) -> u3
     let convex = start & (a1 > q) & (b0 > p) & (g0 >= p) & (g1 >= q);
     let inflecting = start & (a1 < -q) & (b0 < -p);
     // Nor does the chord turn another way than the ends then.
-    let met = met(convex, Requirements::CONVEXITY.and(Requirements::GLOBAL_CONVEXITY))
+    let met = met(convex, Requirements::CONVEXITY.union(Requirements::GLOBAL_CONVEXITY))
         | met(inflecting, Requirements::INFLECTION)
         // (a×L)·P = (a×b)·P + (a×c)·P, and (L×c)·P likewise.
         | met((a0 > p) & (a0 + g0 > 2.0 * p), Requirements::TURNING_AT_START)
@@ -293,10 +261,10 @@ pub(crate) fn violations(
     cones: impl FnOnce() -> Cones,
 ) -> Violations {
     let violations = sign_violations(s, required, lean);
-    if required.any(
-        Requirements::of(Criterion::Coplanarity).and(Requirements::of(Criterion::Collinearity)),
+    if required.intersects(
+        Requirements::of(Criterion::Coplanarity).union(Requirements::of(Criterion::Collinearity)),
     ) {
-        return violations.and(cone_violations(s, required, &cones(), lean));
+        return violations.union(cone_violations(s, required, &cones(), lean));
     }
     violations
 }
@@ -318,14 +286,14 @@ pub(crate) fn sign_violations(
     let mut stops = Violations::default();
     stops.add(
         Violations::NOT_REGULAR,
-        required.any(Requirements::REGULAR) && !is_regular(s, required),
+        required.intersects(Requirements::REGULAR) && !is_regular(s, required),
     );
     let coarse = Signs::coarse(s);
     let violations = violations_of_signs(&coarse, required, Lean::Against);
     if violations.is_empty() || violations == violations_of_signs(&coarse, required, Lean::For) {
-        return violations.and(stops);
+        return violations.union(stops);
     }
-    violations_of_signs(&Signs::fine(s), required, lean).and(stops)
+    violations_of_signs(&Signs::fine(s), required, lean).union(stops)
 }
 
 #[inline(always)]
@@ -334,39 +302,40 @@ fn violations_of_signs(signs: &Signs, required: Requirements, lean: Lean) -> Vio
     // Written so that a NaN fails.
     let positive = |x: Rounded| x.is_positive(lean);
     let Signs { omega: omega @ [[a0, g0, b0], [a1, g1, b1]], beside, twist } = *signs;
-    if required.any(Requirements::CONVEXITY) {
+    if required.intersects(Requirements::CONVEXITY) {
         let (start, end) = (positive(a0) && positive(a1), positive(b0) && positive(b1));
         violations.add(Violations::CONVEXITY_AT_START, !start);
         violations.add(Violations::CONVEXITY_AT_END, !end);
         let between = is_positive([a0, g0, b0], lean) && is_positive([a1, g1, b1], lean);
         violations.add(Violations::CONVEXITY_BETWEEN, start && end && !between);
-    } else if required.any(Requirements::INFLECTION) {
+    } else if required.intersects(Requirements::INFLECTION) {
         violations.add(Violations::INFLECTION_AT_START, !(positive(a0) && positive(-a1)));
         violations.add(Violations::INFLECTION_AT_END, !(positive(-b0) && positive(b1)));
     }
-    if required.any(Requirements::of(Criterion::Turning)) {
+    if required.intersects(Requirements::of(Criterion::Turning)) {
         // Where the signs of two binormal vectors agree, oppose each other, or are not asked for.
         let sided = |x: Rounded, alike: Requirements, apart: Requirements| {
-            (!required.any(alike) || positive(x)) && (!required.any(apart) || positive(-x))
+            (!required.intersects(alike) || positive(x))
+                && (!required.intersects(apart) || positive(-x))
         };
         let pair = |x: Rounded| sided(x, Requirements::TURNS_ALIKE, Requirements::TURNS_APART);
         // The chord turns as (a×L)·P = α + γ, and (L×c)·P' = β + γ.
         let at = |own: Rounded, middle: Rounded, other: Rounded| {
             positive(own) && positive(own + middle) && pair(other)
         };
-        let start = !required.any(Requirements::TURNING_AT_START) || at(a0, g0, a1);
-        let end = !required.any(Requirements::TURNING_AT_END) || at(b1, g1, b0);
+        let start = !required.intersects(Requirements::TURNING_AT_START) || at(a0, g0, a1);
+        let end = !required.intersects(Requirements::TURNING_AT_END) || at(b1, g1, b0);
         let before = sided(beside[0], Requirements::BEFORE_ALIKE, Requirements::BEFORE_APART);
         let after = sided(beside[1], Requirements::AFTER_ALIKE, Requirements::AFTER_APART);
         violations.add(Violations::TURNING_AT_START, !(start && before));
         violations.add(Violations::TURNING_AT_END, !(end && after));
     }
-    if required.any(Requirements::GLOBAL_CONVEXITY) {
+    if required.intersects(Requirements::GLOBAL_CONVEXITY) {
         violations.add(Violations::GLOBAL_CONVEXITY, !is_globally_convex(&omega, lean));
     }
-    if required.any(Requirements::RIGHT_TORSION) {
+    if required.intersects(Requirements::RIGHT_TORSION) {
         violations.add(Violations::TORSION, !positive(twist));
-    } else if required.any(Requirements::LEFT_TORSION) {
+    } else if required.intersects(Requirements::LEFT_TORSION) {
         violations.add(Violations::TORSION, !positive(-twist));
     }
     violations
@@ -380,7 +349,7 @@ pub(crate) fn cone_violations(
     lean: Lean,
 ) -> Violations {
     let mut violations = Violations::default();
-    if required.any(Requirements::COPLANARITY.and(Requirements::SPLIT_COPLANARITY)) {
+    if required.intersects(Requirements::COPLANARITY.union(Requirements::SPLIT_COPLANARITY)) {
         let (epsilon, normals) = cones.plane;
         let axes =
             [(normals[0], s.p), (normals[1], s.q)].map(|(n, p)| SegmentGeometry::plane_axis(n, p));
@@ -391,7 +360,7 @@ pub(crate) fn cone_violations(
         let (start, end) = (end_is_near(&omega, 0), end_is_near(&omega, 2));
         violations.add(Violations::COPLANARITY_AT_START, !start);
         violations.add(Violations::COPLANARITY_AT_END, !end);
-        if required.any(Requirements::COPLANARITY) {
+        if required.intersects(Requirements::COPLANARITY) {
             violations.add(Violations::COPLANARITY_BETWEEN, start && end && !is_near(&omega));
         } else {
             // A failure at the node itself is the violation above; here it is the rest of each part.
@@ -410,14 +379,14 @@ pub(crate) fn cone_violations(
         let ends = [node, far].map(|end| part.end_is_inside(end, line, epsilon, lean));
         [ends[0], ends[1], !(ends[0] && ends[1]) || part.is_inside(line, epsilon, lean)]
     };
-    if required.any(Requirements::LINE_AT_START) {
+    if required.intersects(Requirements::LINE_AT_START) {
         let part = s.tangent_field().part(0.0, LINE_PART);
         let [node, far, between] = holds(part, &lines[0], [0, 2]);
         violations.add(Violations::LINE_AT_START, !node);
         violations.add(Violations::LINE_AFTER_START, !far);
         violations.add(Violations::LINE_INSIDE_START, !between);
     }
-    if required.any(Requirements::LINE_AT_END) {
+    if required.intersects(Requirements::LINE_AT_END) {
         let part = s.tangent_field().part(1.0 - LINE_PART, 1.0);
         let [node, far, between] = holds(part, &lines[1], [2, 0]);
         violations.add(Violations::LINE_AT_END, !node);

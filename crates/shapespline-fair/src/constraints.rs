@@ -98,8 +98,8 @@ impl Constraints {
                 continue;
             }
             let [before, after] = [(node + n - 1) % n, node % n].map(|i| required[i]);
-            if !before.any(Requirements::TURNING_AT_END)
-                && !after.any(Requirements::TURNING_AT_START)
+            if !before.intersects(Requirements::TURNING_AT_END)
+                && !after.intersects(Requirements::TURNING_AT_START)
             {
                 continue;
             }

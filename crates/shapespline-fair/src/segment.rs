@@ -112,9 +112,9 @@ impl Demands<'_> {
     /// Whether a segment is convex, inflects, or neither.
     pub(crate) fn bend(&self, i: usize) -> Bend {
         let required = self.checker.requirements()[i];
-        if required.any(Requirements::CONVEXITY) {
+        if required.intersects(Requirements::CONVEXITY) {
             Bend::Convex
-        } else if required.any(Requirements::INFLECTION) {
+        } else if required.intersects(Requirements::INFLECTION) {
             Bend::Inflecting
         } else {
             Bend::Free
@@ -123,14 +123,14 @@ impl Demands<'_> {
 
     /// Whether the sign of `ω` at one end of a segment along the binormal of the other is asked for.
     pub(crate) fn asks_pair(&self, i: usize) -> bool {
-        self.bend(i) != Bend::Free || self.checker.requirements()[i].any(Requirements::TURNING_PAIR)
+        self.bend(i) != Bend::Free || self.checker.requirements()[i].intersects(Requirements::TURNING_PAIR)
     }
 
     /// Sign of the torsion asked for, or 0.
     pub(crate) fn torsion(&self, i: usize) -> f64 {
         let required = self.checker.requirements()[i];
-        f64::from(u8::from(required.any(Requirements::RIGHT_TORSION)))
-            - f64::from(u8::from(required.any(Requirements::LEFT_TORSION)))
+        f64::from(u8::from(required.intersects(Requirements::RIGHT_TORSION)))
+            - f64::from(u8::from(required.intersects(Requirements::LEFT_TORSION)))
     }
 
     /// `det` of the unit chords around a segment.
@@ -141,12 +141,12 @@ impl Demands<'_> {
     /// Whether coplanarity is asked for.
     pub(crate) fn is_coplanar(&self, i: usize) -> bool {
         self.checker.requirements()[i]
-            .any(Requirements::COPLANARITY.and(Requirements::SPLIT_COPLANARITY))
+            .intersects(Requirements::COPLANARITY.union(Requirements::SPLIT_COPLANARITY))
     }
 
     /// Whether coplanarity is asked for on both sides of an inflection.
     pub(crate) fn is_split(&self, i: usize) -> bool {
-        self.checker.requirements()[i].any(Requirements::SPLIT_COPLANARITY)
+        self.checker.requirements()[i].intersects(Requirements::SPLIT_COPLANARITY)
     }
 
     /// How far control points of a segment may lie from its chord, over the chord's length.
@@ -195,8 +195,8 @@ impl Demands<'_> {
             sines: [p.length(), q.length()],
             straight: lines.map(|line| line.is_some()),
             turns: [Requirements::TURNING_AT_START, Requirements::TURNING_AT_END]
-                .map(|at| required.any(at)),
-            pair: if bend == Bend::Free && required.any(Requirements::TURNING_PAIR) {
+                .map(|at| required.intersects(at)),
+            pair: if bend == Bend::Free && required.intersects(Requirements::TURNING_PAIR) {
                 p.dot(q).signum()
             } else {
                 0.0
@@ -211,11 +211,11 @@ impl Demands<'_> {
                 let at = inflection_parameter(polygon, i);
                 Some([0.5 * at, 0.5 * (1.0 + at)])
             } else {
-                required.any(Requirements::COPLANARITY).then_some([1.0, 1.0])
+                required.intersects(Requirements::COPLANARITY).then_some([1.0, 1.0])
             },
             line: [
-                required.any(Requirements::LINE_AT_START),
-                required.any(Requirements::LINE_AT_END),
+                required.intersects(Requirements::LINE_AT_START),
+                required.intersects(Requirements::LINE_AT_END),
             ],
             deviation: self.deviation(i),
             speed: FORWARD,

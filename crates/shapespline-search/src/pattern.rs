@@ -26,30 +26,30 @@ impl TensionPattern {
     #[must_use]
     pub(crate) fn of(violations: Violations) -> Self {
         const ALL: Violations = Violations::CONVEXITY_BETWEEN
-            .and(Violations::GLOBAL_CONVEXITY)
-            .and(Violations::TORSION)
-            .and(Violations::COPLANARITY_BETWEEN)
-            .and(Violations::COPLANARITY_SPLIT);
+            .union(Violations::GLOBAL_CONVEXITY)
+            .union(Violations::TORSION)
+            .union(Violations::COPLANARITY_BETWEEN)
+            .union(Violations::COPLANARITY_SPLIT);
         const AT_START: Violations = Violations::CONVEXITY_AT_START
-            .and(Violations::INFLECTION_AT_START)
-            .and(Violations::TURNING_AT_START)
-            .and(Violations::COPLANARITY_AT_START)
-            .and(Violations::LINE_AT_START);
+            .union(Violations::INFLECTION_AT_START)
+            .union(Violations::TURNING_AT_START)
+            .union(Violations::COPLANARITY_AT_START)
+            .union(Violations::LINE_AT_START);
         const AT_END: Violations = Violations::CONVEXITY_AT_END
-            .and(Violations::INFLECTION_AT_END)
-            .and(Violations::TURNING_AT_END)
-            .and(Violations::COPLANARITY_AT_END)
-            .and(Violations::LINE_AT_END);
+            .union(Violations::INFLECTION_AT_END)
+            .union(Violations::TURNING_AT_END)
+            .union(Violations::COPLANARITY_AT_END)
+            .union(Violations::LINE_AT_END);
         // Both nodes of the segment, whichever of its ends the line belongs to.
         const FAR: Violations = Violations::LINE_AFTER_START
-            .and(Violations::LINE_BEFORE_END)
-            .and(Violations::NOT_REGULAR);
+            .union(Violations::LINE_BEFORE_END)
+            .union(Violations::NOT_REGULAR);
 
         let (all, start, end) =
-            (violations.any(ALL), violations.any(AT_START), violations.any(AT_END));
-        let far = violations.any(FAR);
-        let inside_start = violations.any(Violations::LINE_INSIDE_START);
-        let inside_end = violations.any(Violations::LINE_INSIDE_END);
+            (violations.intersects(ALL), violations.intersects(AT_START), violations.intersects(AT_END));
+        let far = violations.intersects(FAR);
+        let inside_start = violations.intersects(Violations::LINE_INSIDE_START);
+        let inside_end = violations.intersects(Violations::LINE_INSIDE_END);
         Self {
             raise: [
                 all || start || inside_start,
@@ -57,7 +57,7 @@ impl TensionPattern {
                 all || start || far || inside_start || inside_end,
                 all || end || inside_end,
             ],
-            equal: violations.any(Violations::COPLANARITY_SPLIT),
+            equal: violations.intersects(Violations::COPLANARITY_SPLIT),
         }
     }
 

@@ -128,11 +128,11 @@ impl Cubic {
             }
             Criterion::Torsion => {
                 let twist = dot(&cross(&self.a, &self.b), &self.c);
-                let right = calls.any(Requirements::RIGHT_TORSION);
+                let right = calls.intersects(Requirements::RIGHT_TORSION);
                 Some(if right { twist > BigInt::ZERO } else { twist < BigInt::ZERO })
             }
             Criterion::Coplanarity => {
-                let parts = if calls.any(Requirements::COPLANARITY) {
+                let parts = if calls.intersects(Requirements::COPLANARITY) {
                     vec![[0.0, 1.0]]
                 } else {
                     let flip = inflection_parameter(polygon, segment);
@@ -149,8 +149,8 @@ impl Cubic {
                 let tangent = [self.a.clone(), self.b.clone(), self.c.clone()];
                 let line = |k: usize| mean_direction(&self.around[k + 1], &self.around[k + 2]);
                 let epsilon = tolerances.collinearity;
-                let start = calls.any(Requirements::LINE_AT_START);
-                let end = calls.any(Requirements::LINE_AT_END);
+                let start = calls.intersects(Requirements::LINE_AT_START);
+                let end = calls.intersects(Requirements::LINE_AT_END);
                 let start = start.then(|| inside(&tangent, [0.0, 0.5], &line(0), epsilon));
                 let end = end.then(|| inside(&tangent, [0.5, 1.0], &line(1), epsilon));
                 all(start.into_iter().chain(end))
@@ -163,8 +163,8 @@ impl Cubic {
         let [start, _, end] = self.omega();
         let sides = [cross(&self.a, &self.chord), cross(&self.chord, &self.c)];
         let sign = |calls: Requirements| {
-            i32::from(calls.any(Requirements::CONVEXITY))
-                - i32::from(calls.any(Requirements::INFLECTION))
+            i32::from(calls.intersects(Requirements::CONVEXITY))
+                - i32::from(calls.intersects(Requirements::INFLECTION))
         };
         let holds = |asked: Requirements,
                      bend: &Whole,
@@ -173,7 +173,7 @@ impl Cubic {
                      beside: Requirements| {
             let along = |k: usize| dot(bend, &self.normal(k));
             let agrees = |k: usize, sign: i32| sign == 0 || along(k) * sign > BigInt::ZERO;
-            !calls.any(asked)
+            !calls.intersects(asked)
                 || along(own) > BigInt::ZERO
                     && dot(side, &self.normal(own)) > BigInt::ZERO
                     && agrees(other, sign(calls))

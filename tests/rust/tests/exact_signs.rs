@@ -110,7 +110,7 @@ fn no_verdict_contradicts_exact_arithmetic() {
         let (unproved, violations) = (own.unproved(SEGMENT, legs), own.violations(SEGMENT, legs));
         let around = [SEGMENT - 1, SEGMENT, SEGMENT + 1].map(|i| own.requirements()[i]);
         let calls = around[1];
-        for criterion in Criterion::ALL.into_iter().filter(|&c| calls.any(Requirements::of(c))) {
+        for criterion in Criterion::ALL.into_iter().filter(|&c| calls.intersects(Requirements::of(c))) {
             let Some(holds) = exact.holds(&polygon, SEGMENT, criterion, around, &tolerances) else {
                 continue;
             };
@@ -120,7 +120,7 @@ fn no_verdict_contradicts_exact_arithmetic() {
                 (false, false) => Some(false),
                 (false, true) => None,
             };
-            let mine = verdict(!unproved.any(of), !violations.any(of));
+            let mine = verdict(!unproved.intersects(of), !violations.intersects(of));
             let record = other.record(SEGMENT, criterion);
             let open = other.undecided(SEGMENT, criterion).is_some();
             let theirs = verdict(record.satisfied, open);

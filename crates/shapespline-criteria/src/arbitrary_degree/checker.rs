@@ -205,8 +205,8 @@ impl<'a> CurveChecker<'a> {
         if let Some(cubic) = self.cubic(segment) {
             let (of, [open, violated]) =
                 (Violations::of(criterion), self.cubic_verdict(segment, &cubic));
-            let interval = self.checker.interval(segment, open.only(of));
-            let is_open = open.any(of) && !violated.any(of);
+            let interval = self.checker.interval(segment, open.intersection(of));
+            let is_open = open.intersects(of) && !violated.intersects(of);
             return is_open.then_some(Undecided { segment, criterion, interval });
         }
         let question = self.checker.question(segment, criterion)?;

@@ -38,7 +38,7 @@ impl CurveChecker<'_> {
             let fails = beyond.is_some_and(|beyond| beyond.is_certain || lean == Lean::Against);
             if fails { violation } else { Violations::default() }
         };
-        at(0, Violations::TURNING_AT_START).and(at(1, Violations::TURNING_AT_END))
+        at(0, Violations::TURNING_AT_START).union(at(1, Violations::TURNING_AT_END))
     }
 
     /// A record with what the corners at the ends of its segment add to it.
@@ -69,7 +69,7 @@ impl CurveChecker<'_> {
     ) -> Option<Beyond> {
         let polygon = self.checker().polygon();
         let asked = [Requirements::TURNING_AT_START, Requirements::TURNING_AT_END][end];
-        if !self.checker().requirements()[segment].any(asked) {
+        if !self.checker().requirements()[segment].intersects(asked) {
             return None;
         }
         let n = polygon.segments();

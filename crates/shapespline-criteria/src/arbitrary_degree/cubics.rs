@@ -32,9 +32,9 @@ impl CurveChecker<'_> {
     /// A segment that is one polynomial cubic, between its own end points.
     pub(super) fn cubic(&self, i: usize) -> Option<Cubic> {
         // The conditions on single cubics do not know what is zero by construction.
-        let beside = Requirements::STRAIGHT_BEFORE.and(Requirements::STRAIGHT_AFTER);
+        let beside = Requirements::STRAIGHT_BEFORE.union(Requirements::STRAIGHT_AFTER);
         let subdivided = self.curve.degree() != 3 || self.curve.is_rational();
-        if subdivided || self.checker().requirements()[i].any(beside) {
+        if subdivided || self.checker().requirements()[i].intersects(beside) {
             return None;
         }
         let p = self.curve.piece(self.single(i)?);
@@ -79,7 +79,7 @@ impl CurveChecker<'_> {
     /// What is not proved of a segment that is one polynomial cubic, and what is violated.
     pub(super) fn cubic_verdict(&self, i: usize, cubic: &Cubic) -> [Violations; 2] {
         [Lean::Against, Lean::For].map(|lean| {
-            self.checker().judge(i, cubic, lean).and(self.corner_violations_of(i, lean))
+            self.checker().judge(i, cubic, lean).union(self.corner_violations_of(i, lean))
         })
     }
 
@@ -88,10 +88,10 @@ impl CurveChecker<'_> {
         let [open, violated] = self.cubic_verdict(i, cubic);
         for criterion in Criterion::ALL {
             let of = Violations::of(criterion);
-            if violated.any(of) {
+            if violated.intersects(of) {
                 found.records.push(self.record(i, criterion));
-            } else if open.any(of) {
-                let interval = self.checker().interval(i, open.only(of));
+            } else if open.intersects(of) {
+                let interval = self.checker().interval(i, open.intersection(of));
                 found.undecided.push(Undecided { segment: i, criterion, interval });
             }
         }

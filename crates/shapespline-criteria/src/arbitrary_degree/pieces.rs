@@ -16,17 +16,17 @@ use crate::{
 
 /// What is decided piece by piece: no part of a segment that begins or ends within a piece is asked.
 const BY_PIECES: Requirements = Requirements::CONVEXITY
-    .and(Requirements::INFLECTION)
-    .and(Requirements::RIGHT_TORSION)
-    .and(Requirements::LEFT_TORSION)
-    .and(Requirements::COPLANARITY)
-    .and(Requirements::TURNING_AT_START)
-    .and(Requirements::TURNING_AT_END)
-    .and(Requirements::TURNING_PAIR)
-    .and(Requirements::TURNING_BEFORE)
-    .and(Requirements::TURNING_AFTER)
-    .and(Requirements::REGULAR)
-    .and(Requirements::LEGS);
+    .union(Requirements::INFLECTION)
+    .union(Requirements::RIGHT_TORSION)
+    .union(Requirements::LEFT_TORSION)
+    .union(Requirements::COPLANARITY)
+    .union(Requirements::TURNING_AT_START)
+    .union(Requirements::TURNING_AT_END)
+    .union(Requirements::TURNING_PAIR)
+    .union(Requirements::TURNING_BEFORE)
+    .union(Requirements::TURNING_AFTER)
+    .union(Requirements::REGULAR)
+    .union(Requirements::LEGS);
 
 /// Sine of the angle between tangents where pieces meet that were meant to be smooth.
 const SMOOTH: f64 = 1e-12;
@@ -63,19 +63,19 @@ impl Checker<'_> {
     /// sides on every piece (Lemma 5.1), or to change all of them on one, and the torsion its sign.
     pub(crate) fn is_proved(&self, segment: usize, parts: &[BezierPart]) -> bool {
         let required = self.requirements()[segment];
-        let bends = required.any(Requirements::CONVEXITY.and(Requirements::INFLECTION));
-        let sided = required.any(Requirements::TURNING_PAIR) && !bends;
+        let bends = required.intersects(Requirements::CONVEXITY.union(Requirements::INFLECTION));
+        let sided = required.intersects(Requirements::TURNING_PAIR) && !bends;
         // Near a plane, on the side that convexity says.
-        let lost =
-            required.any(Requirements::COPLANARITY) && !required.any(Requirements::CONVEXITY);
-        if !required.without(BY_PIECES).is_empty() || sided || lost {
+        let lost = required.intersects(Requirements::COPLANARITY)
+            && !required.intersects(Requirements::CONVEXITY);
+        if !required.difference(BY_PIECES).is_empty() || sided || lost {
             return false;
         }
         let Some(pieces) = self.cubics(segment, parts) else { return false };
         let p = self.polygon().binormal(segment);
         // The side at the start of each piece, and the piece on which it changes.
         let before = pieces.iter().filter(|s| s.omega[0].dot(p) > 0.0).count();
-        let change = if required.any(Requirements::INFLECTION) {
+        let change = if required.intersects(Requirements::INFLECTION) {
             before.wrapping_sub(1)
         } else {
             usize::MAX
@@ -83,25 +83,27 @@ impl Checker<'_> {
         let last = pieces.len() - 1;
         let proved = |(k, s): (usize, &SegmentGeometry)| {
             let mut own = required
-                .without(Requirements::TURNING_PAIR)
-                .without(Requirements::REGULAR.and(Requirements::LEGS));
+                .difference(Requirements::TURNING_PAIR)
+                .difference(Requirements::REGULAR.union(Requirements::LEGS));
             if k != 0 {
-                own = own.without(Requirements::TURNING_AT_START.and(Requirements::TURNING_BEFORE));
+                own = own
+                    .difference(Requirements::TURNING_AT_START.union(Requirements::TURNING_BEFORE));
             }
             if k != last {
-                own = own.without(Requirements::TURNING_AT_END.and(Requirements::TURNING_AFTER));
+                own =
+                    own.difference(Requirements::TURNING_AT_END.union(Requirements::TURNING_AFTER));
             }
             let mut s = *s;
-            if required.any(Requirements::INFLECTION) && k != change {
+            if required.intersects(Requirements::INFLECTION) && k != change {
                 // All of it on one side of the change.
-                own = own.without(Requirements::INFLECTION).and(Requirements::CONVEXITY);
+                own = own.difference(Requirements::INFLECTION).union(Requirements::CONVEXITY);
                 (s.p, s.q) = if k < change { (s.p, -s.q) } else { (-s.p, s.q) };
             }
             self.is_clear(segment, &s, own)
         };
         let regular = |s: &SegmentGeometry| leads_along([s.a, s.c], s.chord);
         pieces.iter().enumerate().all(proved)
-            && (!required.any(Requirements::REGULAR) || pieces.iter().all(regular))
+            && (!required.intersects(Requirements::REGULAR) || pieces.iter().all(regular))
             && pieces.windows(2).all(|pair| {
                 let (u, v) = (pair[0].c.normalize_or_zero(), pair[1].a.normalize_or_zero());
                 u.cross(v).length() <= SMOOTH && u.dot(v) > 0.0
@@ -113,8 +115,8 @@ impl Checker<'_> {
     fn is_clear(&self, segment: usize, s: &SegmentGeometry, required: Requirements) -> bool {
         let turns = [s.before, s.p, s.q, s.after].map(sum);
         let bounds = Coarse::new(sum(s.a) + sum(s.chord) + sum(s.c), s.slack, turns);
-        let clear =
-            !required.any(Requirements::COPLANARITY) && unproved(s, bounds, required.bits()) == 0;
+        let clear = !required.intersects(Requirements::COPLANARITY)
+            && unproved(s, bounds, required.bits()) == 0;
         clear || violations(s, required, Lean::Against, || self.cones(segment)).is_empty()
     }
 
@@ -151,7 +153,7 @@ impl Checker<'_> {
         };
         let asked = [Requirements::TURNING_AT_START, Requirements::TURNING_AT_END];
         [parts.first(), parts.last()].into_iter().enumerate().all(|(end, part)| {
-            !required.any(asked[end]) || part.is_some_and(|part| leans(end, part))
+            !required.intersects(asked[end]) || part.is_some_and(|part| leans(end, part))
         })
     }
 
@@ -179,7 +181,7 @@ impl Checker<'_> {
         let cones = self.cones(segment);
         let chord = polygon.direction(segment);
         let question = Question { criterion, required, normals, beside, chord, cones };
-        required.any(Requirements::of(criterion)).then_some(question)
+        required.intersects(Requirements::of(criterion)).then_some(question)
     }
 }
 

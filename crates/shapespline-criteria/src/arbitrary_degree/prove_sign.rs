@@ -28,7 +28,7 @@ pub(crate) struct Question {
 impl Question {
     /// The sign that the torsion has to have.
     pub(crate) fn torsion_sign(&self) -> f64 {
-        if self.required.any(Requirements::RIGHT_TORSION) { 1.0 } else { -1.0 }
+        if self.required.intersects(Requirements::RIGHT_TORSION) { 1.0 } else { -1.0 }
     }
 
     /// The parts of the segment on which a cone condition is asked, each with its cone: axis and
@@ -38,7 +38,7 @@ impl Question {
         if self.criterion == Criterion::Coplanarity {
             let (epsilon, normals) = self.cones.plane;
             for normal in normals {
-                if self.required.any(Requirements::COPLANARITY) {
+                if self.required.intersects(Requirements::COPLANARITY) {
                     parts.push(([0.0, 1.0], normal, epsilon));
                 } else {
                     let [left, right] = self.cones.parts;
@@ -48,10 +48,10 @@ impl Question {
             }
         } else {
             let (epsilon, [start, end]) = self.cones.line;
-            if self.required.any(Requirements::LINE_AT_START) {
+            if self.required.intersects(Requirements::LINE_AT_START) {
                 parts.push(([0.0, LINE_PART], start, epsilon));
             }
-            if self.required.any(Requirements::LINE_AT_END) {
+            if self.required.intersects(Requirements::LINE_AT_END) {
                 parts.push(([1.0 - LINE_PART, 1.0], end, epsilon));
             }
         }

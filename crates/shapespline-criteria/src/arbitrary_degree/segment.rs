@@ -74,10 +74,10 @@ impl Segment {
     /// The same beside segments that are straight by construction, as its requirements say.
     pub(crate) fn beside(mut self, required: Requirements) -> Self {
         if let Some(first) = self.pieces.first_mut() {
-            first.straight[0] = required.any(Requirements::STRAIGHT_BEFORE);
+            first.straight[0] = required.intersects(Requirements::STRAIGHT_BEFORE);
         }
         if let Some(last) = self.pieces.last_mut() {
-            last.straight[1] = required.any(Requirements::STRAIGHT_AFTER);
+            last.straight[1] = required.intersects(Requirements::STRAIGHT_AFTER);
         }
         self
     }

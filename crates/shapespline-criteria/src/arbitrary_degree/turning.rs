@@ -23,15 +23,15 @@ fn asked(question: &Question, end: usize) -> Asked {
     } else {
         (Requirements::TURNING_AT_END, Requirements::AFTER_ALIKE, Requirements::AFTER_APART)
     };
-    if !required.any(at_node) {
+    if !required.intersects(at_node) {
         return Asked { bends: Vec::new(), tangent: None };
     }
     let mut bends = vec![own];
     for (n, alike, apart) in
         [(other, Requirements::TURNS_ALIKE, Requirements::TURNS_APART), (beside[end], alike, apart)]
     {
-        bends.extend(required.any(alike).then_some(n));
-        bends.extend(required.any(apart).then_some(-n));
+        bends.extend(required.intersects(alike).then_some(n));
+        bends.extend(required.intersects(apart).then_some(-n));
     }
     // (T × l)·P = T·(l × P) at the start, (l × T)·P = T·(P × l) at the end.
     let tangent = if end == 0 { chord.cross(own) } else { own.cross(*chord) };

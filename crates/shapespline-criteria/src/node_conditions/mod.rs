@@ -149,7 +149,7 @@ pub(crate) fn node_conditions(
     // Closed data: the last node is the first.
     let nodes = if polygon.is_closed() { 0..n } else { 1..n };
     let required = Requirements::of_polygon(polygon, &checker.tolerances());
-    let spatial = required.iter().any(|c| c.any(Requirements::of(Criterion::Torsion)));
+    let spatial = required.iter().any(|c| c.intersects(Requirements::of(Criterion::Torsion)));
     for node in nodes {
         if go_on().is_break() {
             return None;
@@ -164,7 +164,7 @@ pub(crate) fn node_conditions(
         }
     }
     let coplanar = Requirements::of(Criterion::Coplanarity);
-    for i in (0..n).filter(|&i| required[i].any(coplanar)) {
+    for i in (0..n).filter(|&i| required[i].intersects(coplanar)) {
         if go_on().is_break() {
             return None;
         }
