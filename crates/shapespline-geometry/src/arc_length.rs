@@ -4,7 +4,7 @@
 
 use std::ops::ControlFlow;
 
-use shapespline_polynomial::parallel;
+use shapespline_polynomial::{bracketed_root, parallel};
 
 use crate::{
     CubicSegment, Curve, DVec3, PiecewiseCubic, Side,
@@ -189,7 +189,7 @@ impl<'a, C: Curve + ?Sized> ArcLength<'a, C> {
     }
 
     /// The parameter at a length from the first knot, `0 ≤ length ≤ total`; values outside are
-    /// taken to the ends. Newton's iteration kept inside a shrinking bracket.
+    /// taken to the ends. Newton's iteration in a bracket.
     #[must_use]
     pub fn parameter(&self, length: f64) -> f64 {
         let cubic = self.curve.cubic();
@@ -205,24 +205,12 @@ impl<'a, C: Curve + ?Sized> ArcLength<'a, C> {
             return knots[i + 1];
         }
         let segment = cubic.segment(i);
-        let (mut low, mut high, mut t) = (0.0f64, 1.0f64, wanted / whole);
-        for _ in 0..100 {
-            let excess = segment.arc_length(0.0, t) - wanted;
-            if excess.abs() <= 4.0 * f64::EPSILON * whole {
-                break;
-            }
-            if excess > 0.0 {
-                high = t
-            } else {
-                low = t
-            }
-            let newton = t - excess / crate::length(segment.derivatives(t)[0]);
-            let next = if newton > low && newton < high { newton } else { 0.5 * (low + high) };
-            if next == t || high - low <= f64::EPSILON {
-                break;
-            }
-            t = next;
-        }
+        let excess = |t: f64| {
+            (segment.arc_length(0.0, t) - wanted, crate::length(segment.derivatives(t)[0]))
+        };
+        let (values, accuracy) = ([-wanted, whole - wanted], 4.0 * f64::EPSILON * whole);
+        let limits = [accuracy, f64::EPSILON];
+        let t = bracketed_root(excess, [0.0, 1.0], values, wanted / whole, limits);
         self.curve.parameter(i, t)
     }
 }

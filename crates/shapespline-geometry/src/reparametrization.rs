@@ -2,6 +2,8 @@
 
 //! The monotone cubic that maps a Bézier parameter to another one, and its inverse.
 
+use shapespline_polynomial::bracketed_root;
+
 /// The cubic on `[0, 1]` from 0 to 1 with slopes `0 < λ⁰, λ¹ ≤ 1` at its ends: (3.3) of paper 000 on
 /// a segment brought to `[0, 1]`.
 ///
@@ -150,7 +152,7 @@ fn coefficients(lambda: f64, far: f64) -> (f64, f64) {
     (3.0 - 2.0 * lambda - far, lambda + far - 2.0)
 }
 
-/// Newton's iteration that never leaves a bracket of the root, halving where it would.
+/// The same by Newton's iteration in a bracket, wherever the guess is.
 #[cold]
 fn bracketed(lambda: f64, far: f64, x: f64, guess: f64) -> f64 {
     let (k, c) = coefficients(lambda, far);
@@ -158,29 +160,13 @@ fn bracketed(lambda: f64, far: f64, x: f64, guess: f64) -> f64 {
     if !(x > 0.0) {
         return x;
     }
-    let (mut low, mut high) = (0.0f64, 0.5f64);
-    // Where λ² underflows the guess is 0/0.
-    let mut t = if guess.is_nan() { 0.25 } else { guess.clamp(low, high) };
-    // Halving alone would end at the smallest f64.
-    for _ in 0..1100 {
-        let value = t * (lambda + t * (k + c * t)) - x;
-        if value == 0.0 {
-            return t;
-        }
-        if value > 0.0 {
-            high = t
-        } else {
-            low = t
-        }
-        let newton = t - value / (lambda + t * (2.0 * k + 3.0 * c * t));
-        let inside = newton > low && newton < high;
-        let next = if inside { newton } else { 0.5 * (low + high) };
-        if next == low || next == high || (next - t).abs() <= f64::EPSILON * next {
-            return next;
-        }
-        t = next;
+    let at = |t: f64| (t * (lambda + t * (k + c * t)) - x, lambda + t * (2.0 * k + 3.0 * c * t));
+    // At ½ rounding may leave the value on the wrong side.
+    let end = at(0.5).0;
+    if !(end > 0.0) {
+        return 0.5;
     }
-    t
+    bracketed_root(at, [0.0, 0.5], [-x, end], guess, [0.0, f64::EPSILON])
 }
 
 #[cfg(test)]

@@ -10,6 +10,8 @@ use crate::periodic::wrapped;
 use crate::segment_polynomial::SegmentPolynomial;
 use crate::spline::MonotoneSpline;
 
+use shapespline_polynomial::bracketed_root;
+
 mod batch;
 mod sorted;
 
@@ -237,36 +239,13 @@ impl MonotoneSpline {
 #[inline]
 fn local(polynomial: &SegmentPolynomial, y: f64, start: f64) -> f64 {
     let dy = polynomial.y[1] - polynomial.y[0];
-    let rising = dy > 0.0;
     let (from0, from1) = (y - polynomial.y[0], y - polynomial.y[1]);
-    let (mut lo, mut hi) = (0.0f64, 1.0f64);
-    let mut t = if start > 0.0 && start < 1.0 { start } else { from0 / dy };
+    let start = if start > 0.0 && start < 1.0 { start } else { from0 / dy };
     // A residual below half an ulp of y is as good as zero.
     let tolerance = 0.25 * f64::EPSILON * y.abs().max(f64::MIN_POSITIVE);
-    for k in 0..80 {
+    let residual = |t: f64| {
         let (value, slope) = polynomial.residual_and_slope(t);
-        let r = value - if t < 0.5 { from0 } else { from1 };
-        if r.abs() <= tolerance {
-            break;
-        }
-        if (r < 0.0) == rising {
-            lo = t;
-        } else {
-            hi = t;
-        }
-        let newton = t - r / slope;
-        // Newton converges in a few steps; where the derivative touches zero it crawls and bisection takes over.
-        let near = (newton - t).abs() < 1e-8;
-        let next = if newton > lo && newton < hi && (k % 4 != 3 || near) {
-            newton
-        } else {
-            0.5 * (lo + hi)
-        };
-        let step = (next - t).abs();
-        t = next;
-        if step <= 1e-16 * t.min(1.0 - t) + 1e-300 || hi - lo <= 1.2e-16 * lo {
-            break;
-        }
-    }
-    t
+        (value - if t < 0.5 { from0 } else { from1 }, slope)
+    };
+    bracketed_root(residual, [0.0, 1.0], [-from0, -from1], start, [tolerance, 1e-16])
 }

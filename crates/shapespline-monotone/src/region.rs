@@ -13,6 +13,8 @@
 //! (p'(0) = 0 or p'(1) = 0) joins an arc to a corner or two corners. On an arc p'(1) is extreme for τ = 2/5 and p'(0)
 //! for τ = 3/5: there a combination of the functionals p(0), p(1), p(τ), ∫p and the derivative vanishes on all quartics.
 
+use shapespline_polynomial::bracketed_root;
+
 /// A convex region in the plane of (p'(0), p'(1)).
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Region {
@@ -148,31 +150,14 @@ impl Region {
         (found[0] <= found[1]).then_some(found)
     }
 
-    /// The point of a piece at which p'(0) = x: the secant method on the logarithm of z, kept in its bracket (Illinois),
-    /// with a halving now and then.
+    /// The point of a piece at which p'(0) = x: the root in the logarithm of z.
     fn at(&self, x: f64, from: f64, to: f64) -> [f64; 2] {
-        const STEPS: u32 = 80;
         let miss = |u: f64| self.point(u.exp())[0] - x;
-        let (mut lo, mut hi) = (from.max(1e-300).ln(), to.min(1e300).ln());
-        let (mut below, mut above) = (miss(lo), miss(hi));
+        let ends = [from.max(1e-300).ln(), to.min(1e300).ln()];
         let resolution = 1e-15 * (self.a + self.b + x.abs() + 1.0);
-        for step in 1..=STEPS {
-            let secant = lo + (hi - lo) * (below / (below - above));
-            let middle = if step % 4 == 0 { 0.5 * (lo + hi) } else { secant };
-            if !(lo < middle && middle < hi) {
-                break;
-            }
-            let value = miss(middle);
-            if value.abs() <= resolution {
-                return self.point(middle.exp());
-            }
-            if (value < 0.0) == (below < 0.0) {
-                (lo, below, above) = (middle, value, 0.5 * above);
-            } else {
-                (hi, above, below) = (middle, value, 0.5 * below);
-            }
-        }
-        self.point((0.5 * (lo + hi)).exp())
+        let values = ends.map(miss);
+        let u = bracketed_root(|u| (miss(u), f64::NAN), ends, values, f64::NAN, [resolution, 0.0]);
+        self.point(u.exp())
     }
 }
 

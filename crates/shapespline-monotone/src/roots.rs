@@ -6,7 +6,7 @@
 //! between them; stationary points are the roots of the derivative, found in the same way. A value below the rounding error
 //! counts as zero, and consecutive zeros (a double root, or roots that rounding cannot separate) count as one root.
 
-use shapespline_polynomial::bernstein;
+use shapespline_polynomial::{bernstein, bracketed_root};
 
 /// Values up to this many ulp of the sum of the absolute terms, per coefficient, count as zero: the errors of de Casteljau's
 /// and of Horner's scheme are about one.
@@ -204,7 +204,9 @@ impl Merged {
             if let Some((t0, value0)) = before
                 && (value0 < 0.0) != (value < 0.0)
             {
-                self.out.extend(at(bracketed(form, [t0, t], [value0, value])));
+                let of = |t: f64| (form.value(t), f64::NAN);
+                let root = bracketed_root(of, [t0, t], [value0, value], f64::NAN, [0.0; 2]);
+                self.out.extend(at(root));
             }
             before = Some((t, value));
         }
@@ -231,39 +233,6 @@ impl Merged {
         self.close();
         self.out
     }
-}
-
-/// The root in a bracket with a change of sign: secant steps with the Illinois rule. Every fourth step halves the number of
-/// floating-point numbers in the bracket instead, so that 256 steps are enough for any bracket.
-fn bracketed(form: &impl Form, t: [f64; 2], value: [f64; 2]) -> f64 {
-    let ([mut lo, mut hi], [mut f_lo, mut f_hi]) = (t, value);
-    let mut best = if f_lo.abs() < f_hi.abs() { (lo, f_lo.abs()) } else { (hi, f_hi.abs()) };
-    let mut side = 0;
-    for k in 1..256 {
-        let half = f64::from_bits(lo.to_bits() + (hi.to_bits() - lo.to_bits()) / 2);
-        if half <= lo {
-            break;
-        }
-        let secant = lo + (hi - lo) * (f_lo / (f_lo - f_hi));
-        let t = if secant > lo && secant < hi && k % 4 != 0 { secant } else { half };
-        let f = form.value(t);
-        if f.abs() < best.1 {
-            best = (t, f.abs());
-        }
-        if f == 0.0 {
-            break;
-        }
-        if (f < 0.0) == (f_lo < 0.0) {
-            (lo, f_lo) = (t, f);
-            f_hi *= if side < 0 { 0.5 } else { 1.0 };
-            side = -1;
-        } else {
-            (hi, f_hi) = (t, f);
-            f_lo *= if side > 0 { 0.5 } else { 1.0 };
-            side = 1;
-        }
-    }
-    best.0
 }
 
 #[cfg(test)]

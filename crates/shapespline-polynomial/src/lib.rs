@@ -8,8 +8,10 @@ pub mod parallel;
 mod polynomial;
 pub mod quadratic;
 pub mod quartic;
+mod root;
 mod sign;
 
 pub use bernstein::Coefficient;
 pub use polynomial::Polynomial;
+pub use root::bracketed_root;
 pub use sign::{Sign, certified_nonnegative};

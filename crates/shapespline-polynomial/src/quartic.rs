@@ -2,6 +2,8 @@
 
 //! Quartics on `[0, 1]` in Bernstein form: values and least values.
 
+use crate::bracketed_root;
+
 /// The value at t by the scheme of de Casteljau's weights.
 #[inline]
 #[must_use]
@@ -52,25 +54,10 @@ pub fn minima(c: &[f64; 5]) -> [Option<Minimum>; 2] {
     let slope = |t: f64| (3.0 * k3 * t + 2.0 * k2) * t + k1;
     let mut found = [None, None];
     let mut count = 0;
-    let mut add = |lo: f64, hi: f64| {
-        // cubic(lo) < 0 < cubic(hi), monotone between: Newton kept inside the bracket.
-        let (mut lo, mut hi) = (lo, hi);
-        let mut t = 0.5 * (lo + hi);
-        for _ in 0..60 {
-            let f = cubic(t);
-            if f < 0.0 {
-                lo = t;
-            } else {
-                hi = t;
-            }
-            let next = t - f / slope(t);
-            let next = if next > lo && next < hi { next } else { 0.5 * (lo + hi) };
-            let done = (next - t).abs() <= 1e-9 * next.min(1.0 - next) || hi - lo <= 1e-15;
-            t = next;
-            if done {
-                break;
-            }
-        }
+    let mut add = |ends: [f64; 2], values: [f64; 2]| {
+        // The cubic rises through zero, monotone between. The value at the minimum has the square of the error.
+        let (at, start) = (|t: f64| (cubic(t), slope(t)), 0.5 * (ends[0] + ends[1]));
+        let t = bracketed_root(at, ends, values, start, [0.0, 1e-9]);
         if count < 2 {
             let value = dot(c, &basis(t));
             found[count] = Some(Minimum { t, value, curvature: 4.0 * slope(t) });
@@ -82,7 +69,7 @@ pub fn minima(c: &[f64; 5]) -> [Option<Minimum>; 2] {
     let discriminant = b * b - a * k1;
     if !(discriminant > 0.0) {
         if q[0] < 0.0 && q[3] > 0.0 {
-            add(0.0, 1.0);
+            add([0.0, 1.0], [q[0], q[3]]);
         }
         return found;
     }
@@ -113,7 +100,7 @@ pub fn minima(c: &[f64; 5]) -> [Option<Minimum>; 2] {
     let values = [q[0], at(knots[1]), at(knots[2]), q[3]];
     for k in 0..3 {
         if knots[k] < knots[k + 1] && values[k] < 0.0 && values[k + 1] > 0.0 {
-            add(knots[k], knots[k + 1]);
+            add([knots[k], knots[k + 1]], [values[k], values[k + 1]]);
         }
     }
     found

@@ -2,13 +2,13 @@
 
 //! The real roots of low-degree polynomials in Bernstein form, none left out.
 
-use shapespline_polynomial::bernstein::{split, value_and_slope};
+use shapespline_polynomial::{
+    bernstein::{split, value_and_slope},
+    bracketed_root,
+};
 
 /// Subdivision ends at intervals of `2^{−44}`: what is still open there is a root to rounding.
 const DEPTH: u32 = 44;
-
-/// Refinements of a bracketed root, by Newton's method or else by halving.
-const STEPS: usize = 100;
 
 /// Calls `found(t, width)` for every root of the polynomial on `[0, 1]`, where coefficients
 /// carry an error of at most `error`: the root lies within `width` of `t`. An interval where
@@ -76,25 +76,10 @@ fn has_one_change<const N: usize>(p: &[f64; N], error: f64) -> bool {
 
 /// The root between ends of different sign, and how far rounding leaves it open.
 fn bracketed<const N: usize>(p: [f64; N], error: f64) -> (f64, f64) {
-    let rising = p[0] < 0.0;
-    let (mut low, mut high) = (0.0, 1.0);
-    let mut t = p[0] / (p[0] - p[N - 1]);
-    let mut slope = 0.0;
-    for _ in 0..STEPS {
-        let y;
-        (y, slope) = value_and_slope(p, t);
-        if (y < 0.0) == rising {
-            low = t;
-        } else {
-            high = t;
-        }
-        if y.abs() <= 0.25 * error || high - low <= f64::EPSILON {
-            break;
-        }
-        let newton = t - y / slope;
-        // Written so that a NaN fails.
-        t = if newton > low && newton < high { newton } else { 0.5 * (low + high) };
-    }
+    let at = |t: f64| value_and_slope(p, t);
+    let limits = [0.25 * error, f64::EPSILON];
+    let t = bracketed_root(at, [0.0, 1.0], [p[0], p[N - 1]], f64::NAN, limits);
+    let slope = at(t).1;
     // Where the slope exceeds all that the curvature can make of it nearby, it says how far.
     let bend = ((N - 1) * (N - 2) * 4) as f64 * p.iter().fold(0.0f64, |m, c| m.max(c.abs()));
     if slope * slope > 16.0 * error * bend {

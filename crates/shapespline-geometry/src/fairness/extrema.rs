@@ -9,7 +9,7 @@
 
 use glam::DVec3;
 
-use shapespline_polynomial::{Polynomial, bernstein::horner};
+use shapespline_polynomial::{Polynomial, bernstein::horner, bracketed_root};
 
 /// Deepest subdivision.
 const DEPTH: u32 = 40;
@@ -154,16 +154,8 @@ fn growth(
     }
 }
 
-/// The root of a polynomial with opposite signs at the ends and one sign change of its coefficients,
-/// by bisection.
+/// The root of a polynomial with opposite signs at the ends and one sign change of its coefficients.
 fn root(p: &Polynomial<f64>) -> f64 {
-    let rising = p.ends()[1] > 0.0;
-    let [mut from, mut to] = [0.0, 1.0];
-    loop {
-        let middle = 0.5 * (from + to);
-        if !(from < middle && middle < to) || to - from < 1e-15 {
-            return middle;
-        }
-        if (horner(p.coefficients(), middle) > 0.0) == rising { to = middle } else { from = middle }
-    }
+    let at = |t: f64| (horner(p.coefficients(), t), f64::NAN);
+    bracketed_root(at, [0.0, 1.0], p.ends(), f64::NAN, [0.0, 1e-15])
 }
