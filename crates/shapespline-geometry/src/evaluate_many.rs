@@ -7,7 +7,7 @@ use std::array;
 use glam::DVec3;
 use shapespline_polynomial::parallel;
 
-use crate::{Dimension, Domain, InputError, PiecewiseCubic, Side, locate::search};
+use crate::{Dimension, Domain, InputError, PiecewiseCubic, Side};
 
 /// Parameters whose segments are found before any of them is evaluated.
 const TILE: usize = 64;
@@ -17,9 +17,6 @@ const PART: usize = 256 * TILE;
 
 /// Parameters a segment from which the runs of each segment are evaluated together.
 const RUN: usize = 8;
-
-/// Knots that the search from a segment on looks at together.
-const AHEAD: usize = 4;
 
 /// `[1 − t, t]` of the parameters of a tile.
 pub(crate) type Locals = [[f64; 2]; TILE];
@@ -74,7 +71,7 @@ fn rows<E: Evaluate + ?Sized, const ORDER: usize, const COLUMNS: usize>(
 ) {
     let image = curve.image();
     // A table costs about as much to make as it saves on one query a segment.
-    let table = if u.len() >= image.segments().max(64) { image.table() } else { None };
+    let search = image.searcher(u.len() >= image.segments().max(64));
     let row = |i: usize, local: [f64; 2]| -> [f64; COLUMNS] {
         let value = curve.derivative::<ORDER>(i, local).to_array();
         array::from_fn(|column| value[column])
@@ -85,13 +82,13 @@ fn rows<E: Evaluate + ?Sized, const ORDER: usize, const COLUMNS: usize>(
         let sorted = u.windows(2).fold(true, |sorted, w| sorted & (w[0] <= w[1]));
         let (first, last) = (u[0], u[u.len() - 1]);
         if sorted && side == Side::Right && image.wrap(first) == first && image.wrap(last) == last {
-            *hint = image.near(*hint, first);
+            *hint = search.near(*hint, first);
             let ahead = (*hint + u.len() / RUN).min(image.segments());
             if ahead == image.segments() || last < image.knots()[ahead] {
                 // On few segments, as fine samples are: what depends on one alone is computed once.
                 let mut from = 0;
                 while from < u.len() {
-                    let segment = image.near(*hint, u[from]);
+                    let segment = search.near(*hint, u[from]);
                     let end = if segment + 1 < image.segments() {
                         image.knots()[segment + 1]
                     } else {
@@ -111,11 +108,7 @@ fn rows<E: Evaluate + ?Sized, const ORDER: usize, const COLUMNS: usize>(
         let (mut segments, mut wrapped) = ([0; TILE], [0.0; TILE]);
         for ((&u, segment), wrapped) in u.iter().zip(&mut segments).zip(&mut wrapped) {
             *wrapped = image.wrap(u);
-            *hint = match table {
-                _ if sorted => image.near(*hint, *wrapped),
-                Some(table) => table.segment(image.knots(), *wrapped),
-                None => search(image.knots(), *wrapped, Side::Right),
-            };
+            *hint = if sorted { search.near(*hint, *wrapped) } else { search.find(*wrapped) };
             *segment = *hint;
             if side == Side::Left && *wrapped == image.knots()[*segment] {
                 (*segment, *wrapped) = image.before(*segment);
@@ -139,31 +132,6 @@ impl PiecewiseCubic {
         match (segment, self.domain()) {
             (0, Domain::Closed) => (last - 1, self.knots()[last]),
             _ => (segment.saturating_sub(1), self.knots()[segment]),
-        }
-    }
-
-    /// Segment of `u`: looked for from the one before on, in steps that double, as sorted parameters
-    /// have it; by search where it lies behind.
-    #[inline(always)]
-    fn near(&self, hint: usize, u: f64) -> usize {
-        let (knots, last) = (self.knots(), self.segments());
-        if !(knots[hint] <= u) {
-            return search(knots, u, Side::Right);
-        }
-        // How many of the next knots lie behind, counted: a branch at each would be a guess.
-        if let Some(next) = knots.get(hint + 1..=hint + AHEAD) {
-            let passed = next.iter().filter(|&&knot| knot <= u).count();
-            if passed < AHEAD {
-                return hint + passed;
-            }
-        }
-        let (mut low, mut step) = (hint, 1);
-        loop {
-            let high = (low + step).min(last);
-            if high == last || u < knots[high] {
-                return low + knots[low + 1..high].partition_point(|&k| k <= u);
-            }
-            (low, step) = (high, 2 * step);
         }
     }
 }

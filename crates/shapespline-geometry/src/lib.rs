@@ -46,7 +46,6 @@ mod evaluate_many;
 mod fairness;
 mod frame;
 mod input;
-mod locate;
 mod parametrization;
 mod piecewise;
 mod piecewise_bezier;
@@ -56,6 +55,7 @@ mod ragged;
 mod reparametrization;
 mod reparametrized;
 mod segment;
+mod side;
 mod vector;
 
 pub use arc_length::ArcLength;
@@ -68,7 +68,6 @@ pub use fairness::{
 pub use frame::Frame;
 pub use glam::{DVec3, DVec4};
 pub use input::{InputMap, InputPoints, Repeated};
-pub use locate::Side;
 pub use parametrization::Parametrization;
 pub use piecewise::{Domain, PiecewiseCubic};
 pub use piecewise_bezier::{BezierPart, PiecewiseBezier};
@@ -79,6 +78,7 @@ pub use reparametrized::ReparametrizedCubic;
 pub use segment::CubicSegment;
 /// Bernstein polynomials and what proves their signs.
 pub use shapespline_polynomial as polynomial;
+pub use side::Side;
 pub use vector::{length, normalize, normalized_scale};
 
 /// The examples of the README are run as tests.

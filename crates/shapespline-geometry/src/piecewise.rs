@@ -7,14 +7,14 @@ mod evaluate;
 use std::sync::Arc;
 
 use glam::DVec3;
-use once_cell::race::OnceBox;
-use shapespline_polynomial::parallel;
+use shapespline_polynomial::{
+    knots::{Locator, Searcher},
+    parallel,
+};
 
 use crate::{
     Boundary, CubicSegment, DataPolygon, Dimension, InputError, Parametrization, Side,
-    error::check_room,
-    locate::{Locator, search},
-    parametrization::check_increasing,
+    error::check_room, parametrization::check_increasing,
 };
 
 /// What a parameter outside the knots means.
@@ -44,7 +44,7 @@ pub struct PiecewiseCubic {
     domain: Domain,
     /// Made by the first large unsorted evaluation.
     #[cfg_attr(feature = "serde", serde(skip))]
-    locator: OnceBox<Option<Locator>>,
+    locator: Locator,
 }
 
 /// What was stored, by whomever: it becomes a curve only if the constructor takes it.
@@ -77,7 +77,7 @@ impl Clone for PiecewiseCubic {
             legs: self.legs.clone(),
             dimension: self.dimension,
             domain: self.domain,
-            locator: OnceBox::new(),
+            locator: Locator::default(),
         }
     }
 }
@@ -126,7 +126,7 @@ impl PiecewiseCubic {
         check_room("points", &points)?;
         check_legs(&legs)?;
         let (knots, points) = (Arc::new(knots), Arc::new(points));
-        Ok(Self { knots, points, legs, dimension, domain, locator: OnceBox::new() })
+        Ok(Self { knots, points, legs, dimension, domain, locator: Locator::default() })
     }
 
     /// Curve through the points of a polygon, which it shares, with the end legs of each segment.
@@ -146,7 +146,7 @@ impl PiecewiseCubic {
         let domain = if polygon.is_closed() { Domain::Closed } else { Domain::Open };
         let dimension = polygon.dimension();
         let (points, knots) = polygon.shared();
-        Self { knots, points, legs, dimension, domain, locator: OnceBox::new() }
+        Self { knots, points, legs, dimension, domain, locator: Locator::default() }
     }
 
     /// The knots `u_0 < … < u_N`.
@@ -218,11 +218,12 @@ impl PiecewiseCubic {
             let last = self.segments();
             return (last - 1, self.knots[last]);
         }
-        (search(&self.knots, u, side), u)
+        (side.segment(&self.knots, u), u)
     }
 
-    pub(crate) fn table(&self) -> Option<&Locator> {
-        self.locator.get_or_init(|| Box::new(Locator::new(&self.knots))).as_ref()
+    /// What finds the segments of parameters, of `many` faster.
+    pub(crate) fn searcher(&self, many: bool) -> Searcher<'_> {
+        self.locator.searcher(&self.knots, many)
     }
 
     #[inline]

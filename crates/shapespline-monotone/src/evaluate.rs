@@ -4,10 +4,10 @@
 
 use crate::chunked::{self, TILE};
 use crate::extrapolation::{Continuation, Extrapolation};
-use crate::locate::Searcher;
 use crate::periodic;
 use crate::segment_polynomial::SegmentPolynomial;
 use crate::spline::MonotoneSpline;
+use shapespline_polynomial::knots::Searcher;
 use std::array;
 
 /// Tiles that one thread works through at least.

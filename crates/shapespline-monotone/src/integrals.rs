@@ -4,10 +4,10 @@
 
 use crate::beyond::Beyond;
 use crate::extrapolation::{Continuation, Extrapolation};
-use crate::locate::Searcher;
 use crate::periodic;
 use once_cell::race::OnceBox;
 use shapespline_polynomial::bernstein;
+use shapespline_polynomial::knots::Searcher;
 
 /// Items of a level that one item of the next sums up: levels take a fifteenth of a number a piece.
 const WIDTH: usize = 16;

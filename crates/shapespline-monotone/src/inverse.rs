@@ -5,10 +5,10 @@
 use crate::MonotoneError;
 use crate::chunked::{self, TILE};
 use crate::extrapolation::{Continuation, Extrapolation};
-use crate::locate::{Locator, Searcher};
 use crate::periodic::wrapped;
 use crate::segment_polynomial::SegmentPolynomial;
 use crate::spline::MonotoneSpline;
+use shapespline_polynomial::knots::{Locator, Searcher};
 
 use shapespline_polynomial::bracketed_root;
 

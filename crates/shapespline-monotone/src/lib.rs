@@ -57,7 +57,6 @@ mod given;
 mod integrals;
 mod interrupt;
 mod inverse;
-mod locate;
 mod many;
 #[cfg(feature = "nlopt")]
 pub mod nlopt_reference;

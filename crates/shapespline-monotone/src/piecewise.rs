@@ -6,9 +6,9 @@ use crate::beyond::Beyond;
 use crate::chunked::{self, TILE};
 use crate::extrapolation::{Continuation, Extrapolation};
 use crate::integrals::{Lazy, Pieces, whole};
-use crate::locate::Locator;
 use crate::periodic;
 use crate::roots::{Bernstein, Merged, verified};
+use shapespline_polynomial::knots::Locator;
 use shapespline_polynomial::{bernstein, quadratic};
 
 /// Tiles that one thread works through at least.

@@ -7,10 +7,10 @@ use crate::data::{LONG, Units, first};
 use crate::extrapolation::Extrapolation;
 use crate::integrals::Lazy;
 use crate::inverse::Inverse;
-use crate::locate::Locator;
 use crate::piecewise::PiecewisePolynomial;
 use crate::segment_polynomial::{self, SegmentPolynomial, TILE};
 use once_cell::race::OnceBox;
+use shapespline_polynomial::knots::Locator;
 use shapespline_polynomial::parallel::both;
 
 /// What the pieces are beyond their end values and slopes.

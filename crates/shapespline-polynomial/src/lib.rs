@@ -4,6 +4,7 @@
 #![forbid(unsafe_code)]
 
 pub mod bernstein;
+pub mod knots;
 pub mod parallel;
 mod polynomial;
 pub mod quadratic;
