@@ -106,15 +106,24 @@ fn rows<E: Evaluate + ?Sized, const ORDER: usize, const COLUMNS: usize>(
         // First all segments, then all values: what the loops load from memory depends on no branch
         // of the iteration before, so that cache misses overlap.
         let (mut segments, mut wrapped) = ([0; TILE], [0.0; TILE]);
-        for ((&u, segment), wrapped) in u.iter().zip(&mut segments).zip(&mut wrapped) {
-            *wrapped = image.wrap(u);
-            *hint = if sorted { search.near(*hint, *wrapped) } else { search.find(*wrapped) };
-            *segment = *hint;
-            if side == Side::Left && *wrapped == image.knots()[*segment] {
-                (*segment, *wrapped) = image.before(*segment);
+        let wrapped = &mut wrapped[..u.len()];
+        wrapped.iter_mut().zip(u).for_each(|(wrapped, &u)| *wrapped = image.wrap(u));
+        if sorted {
+            for (segment, &u) in segments.iter_mut().zip(&*wrapped) {
+                *hint = search.near(*hint, u);
+                *segment = *hint;
+            }
+        } else {
+            search.tile(wrapped, false, &mut segments);
+        }
+        if side == Side::Left {
+            for (segment, u) in segments.iter_mut().zip(&mut *wrapped) {
+                if *u == image.knots()[*segment] {
+                    (*segment, *u) = image.before(*segment);
+                }
             }
         }
-        curve.locals(|j| segments[j], &wrapped[..u.len()], &mut locals);
+        curve.locals(|j| segments[j], wrapped, &mut locals);
         for ((out, &segment), &local) in out.iter_mut().zip(&segments).zip(&locals) {
             *out = row(segment, local);
         }

@@ -38,11 +38,17 @@ impl Coefficient for glam::DVec4 {
     }
 }
 
-/// De Casteljau's algorithm: so many steps of means `(1−t) c_j + t c_{j+1}` in place, each one shorter than that before.
-/// `first` is called with the number of each step and the first mean it leaves.
+/// De Casteljau's algorithm on the first `n` entries: so many steps of means `(1−t) c_j + t c_{j+1}` in place, each one
+/// shorter than that before. `first` is called with the number of each step and the first mean it leaves.
 #[inline(always)]
-fn means<T: Coefficient>(c: &mut [T], t: f64, steps: usize, mut first: impl FnMut(usize, T)) {
-    let (n, s) = (c.len(), 1.0 - t);
+fn means<T: Coefficient>(
+    c: &mut [T],
+    n: usize,
+    t: f64,
+    steps: usize,
+    mut first: impl FnMut(usize, T),
+) {
+    let s = 1.0 - t;
     for k in 1..=steps {
         for j in 0..n - k {
             c[j] = c[j] * s + c[j + 1] * t;
@@ -68,9 +74,9 @@ pub fn rounding(count: usize, size: f64) -> f64 {
 #[must_use]
 pub fn split<T: Coefficient, C: AsMut<[T]> + Clone>(c: C, t: f64) -> (C, C) {
     let (mut left, mut right) = (c.clone(), c);
-    let steps = right.as_mut().len().saturating_sub(1);
-    let ends = left.as_mut();
-    means(right.as_mut(), t, steps, |k, first| ends[k] = first);
+    let (ends, c) = (left.as_mut(), right.as_mut());
+    let n = c.len();
+    means(c, n, t, n.saturating_sub(1), |k, first| ends[k] = first);
     (left, right)
 }
 
@@ -90,12 +96,12 @@ pub fn value<T: Coefficient>(c: &[T], t: f64) -> T {
     let n = c.len();
     let w: &mut [T] = if n <= array.len() {
         array[..n].copy_from_slice(c);
-        &mut array[..n]
+        &mut array
     } else {
         vector = c.to_vec();
         &mut vector
     };
-    means(w, t, n - 1, |_, _| ());
+    means(w, n, t, n - 1, |_, _| ());
     w[0]
 }
 
@@ -104,7 +110,7 @@ pub fn value<T: Coefficient>(c: &[T], t: f64) -> T {
 #[must_use]
 pub fn value_and_slope<const N: usize>(mut c: [f64; N], t: f64) -> (f64, f64) {
     const { assert!(N > 1) };
-    means(&mut c, t, N - 2, |_, _| ());
+    means(&mut c, N, t, N - 2, |_, _| ());
     (c[0] * (1.0 - t) + c[1] * t, (N - 1) as f64 * (c[1] - c[0]))
 }
 
