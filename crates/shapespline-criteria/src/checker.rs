@@ -9,12 +9,9 @@ use shapespline_geometry::DataPolygon;
 
 use crate::{
     BatchChecker, CachedChecker, Criteria, Criterion, Record, Requirements, ShapeReport,
-    Tolerances, Undecided, Violations,
-    batch::far,
-    margin, regular,
-    resolution::is_straight,
-    rounding::Lean,
-    violations::{Cones, SegmentGeometry, violations},
+    Tolerances, Undecided, Violations, batch::far, cone::Cones, margin, regular,
+    resolution::is_straight, rounding::Lean, segment_geometry::SegmentGeometry,
+    violations::violations,
 };
 
 /// A cubic between two points.

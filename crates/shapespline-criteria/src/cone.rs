@@ -4,12 +4,17 @@
 //! the plane normal) and collinearity (`γ'` around the line).
 
 use glam::DVec3;
+use shapespline_geometry::DataPolygon;
 use shapespline_polynomial::{
     Sign,
     quadratic::{is_positive, multiply},
 };
 
-use crate::rounding::{Lean, UNIT, sum};
+use crate::{
+    Requirements, Tolerances,
+    requirements::inflection_parameter_between,
+    rounding::{Lean, UNIT, sum},
+};
 
 /// A vector quadratic in Bernstein form.
 pub(crate) type Quadratic = [DVec3; 3];
@@ -136,6 +141,52 @@ fn axis_crossing(alpha: f64, m: f64, beta: f64) -> f64 {
     let t = r1.min(r2);
     if t.is_nan() { if alpha == 0.0 { 0.0 } else { 1.0 } } else { t }
 }
+
+/// What the coplanarity and collinearity conditions need beyond the legs.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Cones {
+    /// `ε₁` and the unit binormal vectors at the two nodes: both are normals of the plane, up to the
+    /// tolerance of `Γ = 0`, and (2.5) is asked of both.
+    pub(crate) plane: (f64, [DVec3; 2]),
+    /// `t^ℓ, t^r`: the parts `[0, t^ℓ]` and `[t^r, 1]` of a split coplanarity.
+    pub(crate) parts: [f64; 2],
+    /// `ε₀` and the line directions at the two nodes.
+    pub(crate) line: (f64, [DVec3; 2]),
+}
+
+impl Cones {
+    /// Those of a segment, given the unit chords of it and its neighbours.
+    pub(crate) fn new(
+        polygon: &DataPolygon,
+        segment: usize,
+        [before, own, after]: [DVec3; 3],
+        required: Requirements,
+        tolerances: &Tolerances,
+    ) -> Self {
+        let binormals = [before.cross(own), own.cross(after)];
+        let parts = if required.intersects(Requirements::SPLIT_COPLANARITY) {
+            let flip = inflection_parameter_between(polygon, [segment; 2], binormals);
+            [0.5 * flip, 0.5 * (1.0 + flip)]
+        } else {
+            [0.0, 1.0]
+        };
+        // The line of three points is known from both of its chords.
+        let lines = [before + own, own + after].map(DVec3::normalize_or_zero);
+        Self {
+            plane: (tolerances.coplanarity, binormals.map(DVec3::normalize_or_zero)),
+            parts,
+            line: (tolerances.collinearity, lines),
+        }
+    }
+
+    /// For questions that ask of no cone.
+    pub(crate) fn none() -> Self {
+        Self { plane: (1.0, [DVec3::ZERO; 2]), parts: [0.0, 1.0], line: (1.0, [DVec3::ZERO; 2]) }
+    }
+}
+
+/// Collinearity is asked on this part of a segment next to the node.
+pub(crate) const LINE_PART: f64 = 0.5;
 
 #[cfg(test)]
 mod tests {

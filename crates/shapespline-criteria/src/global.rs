@@ -12,8 +12,8 @@
 //! 1(a) and 2(b) are misprints: they accept the mirror image, which turns the wrong way.
 
 use crate::{
-    rounding::{Lean, Rounded},
-    violations::{SegmentGeometry, is_positive},
+    rounding::{Lean, Rounded, is_positive},
+    segment_geometry::SegmentGeometry,
 };
 
 /// `(a×L)·n` and `(L×c)·n` for both binormal vectors `n`.

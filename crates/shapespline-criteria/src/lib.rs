@@ -65,6 +65,8 @@ mod report;
 mod requirements;
 mod resolution;
 mod rounding;
+mod segment_geometry;
+mod signs;
 mod turning;
 mod violations;
 

@@ -23,10 +23,10 @@ use shapespline_polynomial::quadratic::minimum;
 
 use crate::{
     Requirements,
-    cone::{Quadratic, inside, part},
+    cone::{Cones, LINE_PART, Quadratic, inside, part},
     global::chord_turns,
+    segment_geometry::SegmentGeometry,
     turning::conditions,
-    violations::{Cones, LINE_PART, SegmentGeometry},
 };
 
 /// A margin and the local parameter where it is smallest.

@@ -21,7 +21,7 @@ use shapespline_polynomial::{
     bernstein::{split, value},
 };
 
-use crate::{Requirements, margin::Margin, violations::SegmentGeometry};
+use crate::{Requirements, margin::Margin, segment_geometry::SegmentGeometry};
 
 /// Legs that cancel to this part of their sizes are zero to rounding. Arithmetic alone adds some 64 units in
 /// the last place; the points bring those of their positions, often a thousand chords away from zero:

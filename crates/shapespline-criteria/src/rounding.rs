@@ -19,8 +19,6 @@
 
 use glam::DVec3;
 
-use crate::violations::SegmentGeometry;
-
 /// Half the distance from one to the next number.
 pub(crate) const UNIT: f64 = 0.5 * f64::EPSILON;
 
@@ -97,12 +95,6 @@ pub(crate) fn sum(v: DVec3) -> f64 {
     v.x.abs() + v.y.abs() + v.z.abs()
 }
 
-/// Whether every product in `u×v` is zero.
-fn has_no_products(u: DVec3, v: DVec3) -> bool {
-    let [u, v] = [u, v].map(|v| v.to_array().map(|x| x != 0.0));
-    !(0..3).any(|i| u[i] && (v[(i + 1) % 3] || v[(i + 2) % 3]))
-}
-
 /// Bounds on all signs of a segment at once.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Coarse {
@@ -135,98 +127,13 @@ pub(crate) fn leg_error(far: f64, size: f64) -> f64 {
     LEG_ERROR * (far + 2.0 * size)
 }
 
-/// The numbers whose signs convexity, inflection, turning and torsion are.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Signs {
-    /// `ω·n` as `[α, γ, β]` of Lemma 5.1, for the binormal vectors at both nodes.
-    pub(crate) omega: [[Rounded; 3]; 2],
-    /// `ω(0)·n` and `ω(1)·n` for those at the nodes before and after.
-    pub(crate) beside: [Rounded; 2],
-    /// `det[a, b, c]`.
-    pub(crate) twist: Rounded,
-}
-
-impl Signs {
-    /// As far as they are clear of coarse bounds.
-    #[inline(always)]
-    pub(crate) fn coarse(s: &SegmentGeometry) -> Self {
-        let size = sum(s.a) + sum(s.chord) + sum(s.c);
-        let binormals = [sum(s.before), sum(s.p), sum(s.q), sum(s.after)];
-        let Coarse { turns: [o, p, q, r], twist } = Coarse::new(size, s.slack, binormals);
-        let along = |n: DVec3, error: f64| {
-            let [alpha, gamma, beta] = s.omega_along(n);
-            let of = |value: f64| Rounded { value, error };
-            [of(alpha), of(gamma), of(beta)]
-        };
-        let twist = Rounded { value: s.determinant(), error: twist };
-        let beside = [
-            Rounded { value: s.omega[0].dot(s.before), error: o },
-            Rounded { value: s.omega[2].dot(s.after), error: r },
-        ];
-        Self { omega: [along(s.p, p), along(s.q, q)], beside, twist }
-    }
-
-    /// As exactly as is known.
-    pub(crate) fn fine(s: &SegmentGeometry) -> Self {
-        let [start, end] = [s.omega_signs(s.before)[0], s.omega_signs(s.after)[2]];
-        let omega = [s.omega_signs(s.p), s.omega_signs(s.q)];
-        Self { omega, beside: [start, end], twist: s.rounded_determinant() }
-    }
-}
-
-impl SegmentGeometry {
-    /// `A, Λ, C`, enlarged.
-    #[inline(always)]
-    fn sums(&self) -> [f64; 3] {
-        let off = 3.0 * self.slack;
-        [sum(self.a) + off, sum(self.chord) + off, sum(self.c) + off]
-    }
-
-    /// How far each coordinate of `a×b`, `a×c`, `b×c` may be off: nothing where every product in it is
-    /// zero, as of legs along one axis, for coordinates that are equal are rounded alike.
-    #[inline(always)]
-    pub(crate) fn omega_errors(&self) -> [f64; 3] {
-        let ([a, chord, c], e) = (self.sums(), self.slack);
-        let first = 4.0 * UNIT * a * (chord + c) + e * (chord + c + 2.0 * a);
-        let middle = 3.0 * UNIT * a * c + e * (a + c);
-        let last = 4.0 * UNIT * c * (chord + a) + e * (chord + a + 2.0 * c);
-        let vanishes = |omega: DVec3, own: DVec3, other: DVec3| {
-            omega == DVec3::ZERO && has_no_products(own, self.chord) && has_no_products(own, other)
-        };
-        [
-            if vanishes(self.omega[0], self.a, self.c) { 0.0 } else { first },
-            middle,
-            if vanishes(self.omega[2], self.c, self.a) { 0.0 } else { last },
-        ]
-    }
-
-    /// `ω·n` as `[α, γ, β]`.
-    fn omega_signs(&self, n: DVec3) -> [Rounded; 3] {
-        let (off, size) = (self.omega_errors(), sum(n) + 20.0 * UNIT);
-        [0, 1, 2].map(|k| {
-            let (omega, own) = (self.omega[k], 10.0 * UNIT * sum(self.omega[k]));
-            Rounded { value: omega.dot(n), error: off[k] * size + own }
-        })
-    }
-
-    /// `det[a, b, c] = det[a, L, c]`.
-    fn rounded_determinant(&self) -> Rounded {
-        let [a, chord, c] = self.sums();
-        // a×L = ω(0) + a×c.
-        let products = sum(self.omega[0]) + 3.0 * sum(self.omega[1]) + sum(self.omega[2]);
-        let products = products + 3.0 * self.slack * (a + chord + c);
-        let value = self.determinant();
-        let error = 6.0 * UNIT * a * chord * c + self.slack * products;
-        Rounded { value, error: if value == 0.0 && self.is_flat() { 0.0 } else { error } }
-    }
-
-    /// Whether every product in `det[a, L, c]` is zero.
-    fn is_flat(&self) -> bool {
-        let flat = |axis: fn(DVec3) -> f64| [self.a, self.chord, self.c].map(axis) == [0.0; 3];
-        let pairs = [(self.a, self.chord), (self.chord, self.c), (self.a, self.c)];
-        flat(|v| v.x)
-            || flat(|v| v.y)
-            || flat(|v| v.z)
-            || pairs.into_iter().any(|(u, v)| has_no_products(u, v))
-    }
+/// Whether `α(1−t)² + γt(1−t) + βt²` is positive: Lemma 5.1, with the rounding of its root.
+#[inline(always)]
+pub(crate) fn is_positive([alpha, gamma, beta]: [Rounded; 3], lean: Lean) -> bool {
+    let root = Rounded { error: gamma.error + 8.0 * UNIT * gamma.value.abs(), ..gamma };
+    shapespline_polynomial::quadratic::is_positive(
+        alpha.toward(lean),
+        root.toward(lean),
+        beta.toward(lean),
+    )
 }

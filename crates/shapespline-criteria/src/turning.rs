@@ -16,7 +16,7 @@
 
 use glam::DVec3;
 
-use crate::{Requirements, violations::SegmentGeometry};
+use crate::{Requirements, segment_geometry::SegmentGeometry};
 
 /// A product that has to be positive, and the largest value that it could have.
 pub(crate) type Condition = (f64, f64);

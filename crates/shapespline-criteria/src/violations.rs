@@ -2,19 +2,16 @@
 
 //! The verdict on one segment: which of the exact conditions fail.
 
-use bitflags::bitflags;
-use glam::DVec3;
-use shapespline_geometry::{DataPolygon, normalized_scale};
-use shapespline_polynomial::quadratic;
-
 use crate::{
-    Criterion, Requirements, Tolerances,
-    cone::{Axis, Field, Quadratic},
+    Criterion, Requirements,
+    cone::{Axis, Cones, Field, LINE_PART},
     global::is_globally_convex,
     regular::is_regular,
-    requirements::inflection_parameter_between,
-    rounding::{Coarse, Lean, Rounded, Signs, UNIT, leg_error, sum},
+    rounding::{Coarse, Lean, Rounded, UNIT, is_positive},
+    segment_geometry::SegmentGeometry,
+    signs::Signs,
 };
+use bitflags::bitflags;
 
 bitflags! {
     /// Conditions that fail on a segment `m`, or are not proved to hold, as the failure sets (5.40)–(5.57) of
@@ -86,142 +83,6 @@ impl Violations {
     }
 }
 
-/// A segment and the polygon around it, as the conditions see them: all products of legs at once.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct SegmentGeometry {
-    /// End legs and chord, brought to a common scale near one.
-    pub(crate) a: DVec3,
-    pub(crate) c: DVec3,
-    pub(crate) chord: DVec3,
-    /// `a×b`, `a×c`, `b×c`.
-    pub(crate) omega: [DVec3; 3],
-    /// Binormal vectors of unit chords at the two nodes.
-    pub(crate) p: DVec3,
-    pub(crate) q: DVec3,
-    /// Those at the nodes beside them.
-    pub(crate) before: DVec3,
-    pub(crate) after: DVec3,
-    /// How far each coordinate of `a, c` and `chord` may be off.
-    pub(crate) slack: f64,
-}
-
-impl SegmentGeometry {
-    /// With the binormal vectors at the node before, at the two nodes of the segment, and at the node
-    /// after; `far`: the largest coordinate of the two end points.
-    #[inline]
-    pub(crate) fn new(legs: [DVec3; 2], chord: DVec3, binormals: [DVec3; 4], far: f64) -> Self {
-        let size = chord.abs().max_element();
-        let (legs, chord) = normalized_scale(legs, chord);
-        // In the unit that the legs have now, which is mostly the one they had.
-        let far = far / size * chord.abs().max_element();
-        let slack = leg_error(far, sum(legs[0]) + sum(chord) + sum(legs[1]));
-        Self::of_scaled(legs, chord, binormals, slack)
-    }
-
-    /// The same of legs and chord [near one](normalized_scale) in size.
-    #[inline(always)]
-    pub(crate) fn of_scaled(
-        [a, c]: [DVec3; 2],
-        chord: DVec3,
-        [before, p, q, after]: [DVec3; 4],
-        slack: f64,
-    ) -> Self {
-        // With b = L − a − c: a×b = a×L − a×c, b×c = L×c − a×c.
-        let middle = a.cross(c);
-        let omega = [a.cross(chord) - middle, middle, chord.cross(c) - middle];
-        Self { a, c, chord, omega, p, q, before, after, slack }
-    }
-
-    /// `ω·n` as `[α, γ, β]` of Lemma 5.1.
-    #[inline(always)]
-    pub(crate) fn omega_along(&self, n: DVec3) -> [f64; 3] {
-        let [first, middle, last] = self.omega;
-        [first.dot(n), middle.dot(n), last.dot(n)]
-    }
-
-    /// `det[a, b, c]`: with b = L − a − c it is `det[a, L, c]`.
-    #[inline(always)]
-    pub(crate) fn determinant(&self) -> f64 {
-        self.a.cross(self.chord).dot(self.c)
-    }
-
-    /// `ω` in Bernstein form.
-    pub(crate) fn omega_quadratic(&self) -> Quadratic {
-        let [first, middle, last] = self.omega;
-        [first, middle * 0.5, last]
-    }
-
-    /// `γ'` in Bernstein form, less a factor 3.
-    pub(crate) fn tangent_quadratic(&self) -> Quadratic {
-        [self.a, self.chord - self.a - self.c, self.c]
-    }
-
-    /// `ω` and how far it may be off.
-    fn omega_field(&self) -> Field {
-        let [first, middle, last] = self.omega_errors();
-        Field::new(self.omega_quadratic(), [first, 0.5 * middle, last])
-    }
-
-    /// `γ'` likewise. A leg that is zero stays zero, however its control points are rounded.
-    fn tangent_field(&self) -> Field {
-        let own = |leg: DVec3| if leg == DVec3::ZERO { 0.0 } else { self.slack };
-        let sums = sum(self.a) + sum(self.chord) + sum(self.c);
-        let middle = 3.0 * self.slack + 3.0 * UNIT * sums;
-        Field::new(self.tangent_quadratic(), [own(self.a), middle, own(self.c)])
-    }
-
-    /// Direction of a binormal vector, and how far it may be off.
-    fn plane_axis(direction: DVec3, binormal: DVec3) -> Axis {
-        Axis { direction, off: 12.0 * UNIT / binormal.length() + 4.0 * UNIT }
-    }
-}
-
-/// What the coplanarity and collinearity conditions need beyond the legs.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Cones {
-    /// `ε₁` and the unit binormal vectors at the two nodes: both are normals of the plane, up to the
-    /// tolerance of `Γ = 0`, and (2.5) is asked of both.
-    pub(crate) plane: (f64, [DVec3; 2]),
-    /// `t^ℓ, t^r`: the parts `[0, t^ℓ]` and `[t^r, 1]` of a split coplanarity.
-    pub(crate) parts: [f64; 2],
-    /// `ε₀` and the line directions at the two nodes.
-    pub(crate) line: (f64, [DVec3; 2]),
-}
-
-impl Cones {
-    /// Those of a segment, given the unit chords of it and its neighbours.
-    pub(crate) fn new(
-        polygon: &DataPolygon,
-        segment: usize,
-        [before, own, after]: [DVec3; 3],
-        required: Requirements,
-        tolerances: &Tolerances,
-    ) -> Self {
-        let binormals = [before.cross(own), own.cross(after)];
-        let parts = if required.intersects(Requirements::SPLIT_COPLANARITY) {
-            let flip = inflection_parameter_between(polygon, [segment; 2], binormals);
-            [0.5 * flip, 0.5 * (1.0 + flip)]
-        } else {
-            [0.0, 1.0]
-        };
-        // The line of three points is known from both of its chords.
-        let lines = [before + own, own + after].map(DVec3::normalize_or_zero);
-        Self {
-            plane: (tolerances.coplanarity, binormals.map(DVec3::normalize_or_zero)),
-            parts,
-            line: (tolerances.collinearity, lines),
-        }
-    }
-
-    /// For questions that ask of no cone.
-    pub(crate) fn none() -> Self {
-        Self { plane: (1.0, [DVec3::ZERO; 2]), parts: [0.0, 1.0], line: (1.0, [DVec3::ZERO; 2]) }
-    }
-}
-
-/// Collinearity is asked on this part of a segment next to the node.
-pub(crate) const LINE_PART: f64 = 0.5;
-
 /// The requirements that are not met beyond doubt: none, and there is no violation. A few signs
 /// without branches, within coarse bounds; where those are not enough nothing is decided.
 #[inline(always)]
@@ -267,13 +128,6 @@ pub(crate) fn violations(
         return violations.union(cone_violations(s, required, &cones(), lean));
     }
     violations
-}
-
-/// Whether `α(1−t)² + γt(1−t) + βt²` is positive: Lemma 5.1, with the rounding of its root.
-#[inline(always)]
-pub(crate) fn is_positive([alpha, gamma, beta]: [Rounded; 3], lean: Lean) -> bool {
-    let root = Rounded { error: gamma.error + 8.0 * UNIT * gamma.value.abs(), ..gamma };
-    quadratic::is_positive(alpha.toward(lean), root.toward(lean), beta.toward(lean))
 }
 
 /// The violations of convexity, inflection, turning and torsion, and of a curve that stops.

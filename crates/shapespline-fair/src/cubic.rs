@@ -9,7 +9,10 @@ use shapespline_banded::{Row, Rows, SolveError, solve_once};
 use shapespline_geometry::DataPolygon;
 use shapespline_polynomial::parallel;
 
-use crate::{element::Node, segment::Units};
+use crate::{
+    element::Node,
+    units::{BLOCK, Units},
+};
 
 /// The system of the tangents `q_i`: with `w = h_i/(h_{i−1} + h_i)` and `V = L/h`
 ///
@@ -132,16 +135,6 @@ impl<'a> Plain<'a> {
     }
 }
 
-/// Terms are added in blocks of this many, so that a sum does not depend on the number of threads; two blocks
-/// and more on all threads.
-const BLOCK: usize = 4096;
-
-/// `term(0) + … + term(count − 1)`.
-pub(crate) fn sum(count: usize, term: impl Fn(usize) -> f64 + Sync) -> f64 {
-    let sums: Vec<f64> = parallel::blocks(count, BLOCK, |block| block.map(&term).sum::<f64>());
-    sums.into_iter().sum()
-}
-
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used)]
@@ -149,7 +142,9 @@ mod tests {
     use shapespline_geometry::{Boundary, Parametrization};
 
     use super::*;
-    use crate::{Constraints, energy::parametric, export::Pieces, runs::Runs, segment::Demands};
+    use crate::{
+        Constraints, energy::parametric, export::Pieces, runs::Runs, segment::Demands, units::sum,
+    };
 
     /// Long enough for all threads.
     #[test]

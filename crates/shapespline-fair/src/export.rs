@@ -10,7 +10,7 @@ use shapespline_geometry::{
 
 use crate::{
     element::{Legs, Span, T, TAU, pieces},
-    segment::Units,
+    units::Units,
 };
 
 /// The cubic pieces of a segment, in the user's units.

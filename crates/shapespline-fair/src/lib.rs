@@ -71,6 +71,7 @@ mod solve;
 mod spline;
 mod start;
 mod starts;
+mod units;
 mod window;
 
 pub use constraints::Constraints;

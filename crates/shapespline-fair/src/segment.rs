@@ -4,9 +4,9 @@
 
 use glam::DVec3;
 use shapespline_criteria::{Checker, Requirements, inflection_parameter};
-use shapespline_geometry::{DataPolygon, Dimension, length, normalize};
+use shapespline_geometry::{Dimension, length, normalize};
 
-use crate::{Constraints, cubic::sum, element::Span, energy::Energy, runs::Runs};
+use crate::{Constraints, element::Span, energy::Energy, runs::Runs, units::Units};
 
 /// Turns above 163° (`‖l + l'‖` at most this) have no forward direction.
 const SHARPEST: f64 = 0.3;
@@ -66,24 +66,6 @@ pub(crate) struct Segment {
     pub(crate) weight: f64,
 }
 
-/// Units of a polygon: points are divided by the mean chord, parameters by the mean spacing.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Units {
-    pub(crate) length: f64,
-    pub(crate) time: f64,
-}
-
-impl Units {
-    pub(crate) fn of(polygon: &DataPolygon) -> Self {
-        let n = polygon.segments();
-        let share = 1.0 / n as f64;
-        Self {
-            length: sum(n, |i| length(polygon.chord(i)) * share),
-            time: sum(n, |i| polygon.spacing(i) * share),
-        }
-    }
-}
-
 /// What the segments of a polygon are asked, one by one.
 #[derive(Debug)]
 pub(crate) struct Demands<'a> {
@@ -123,7 +105,8 @@ impl Demands<'_> {
 
     /// Whether the sign of `ω` at one end of a segment along the binormal of the other is asked for.
     pub(crate) fn asks_pair(&self, i: usize) -> bool {
-        self.bend(i) != Bend::Free || self.checker.requirements()[i].intersects(Requirements::TURNING_PAIR)
+        self.bend(i) != Bend::Free
+            || self.checker.requirements()[i].intersects(Requirements::TURNING_PAIR)
     }
 
     /// Sign of the torsion asked for, or 0.

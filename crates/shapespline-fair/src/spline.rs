@@ -13,20 +13,20 @@ use shapespline_criteria::{
     Checker, Criteria, Criterion, CurveChecker, INTERPOLATION, ShapeReport, Tolerances,
 };
 use shapespline_geometry::{
-    Boundary, DVec3, DataPolygon, Dimension, InputError, Parametrization, PiecewiseBezier,
-    PiecewiseCubic, Side,
+    Boundary, DVec3, DataPolygon, Dimension, InputError, PiecewiseBezier, PiecewiseCubic, Side,
 };
 
 use crate::{
     Constraints, Diagnostics, Energy, FairOptions, Fit, FitError, Method, Status, Step,
     constraints::Part,
     control::{Control, Watch},
-    cubic::{Plain, sum},
+    cubic::Plain,
     element::Node,
     energy,
     export::{Pieces, assemble},
     ladder::{LadderResult, climb, turn, turn_nearly},
-    segment::{Demands, Units},
+    segment::Demands,
+    units::{Units, sum},
     window::is_given,
 };
 
@@ -98,7 +98,7 @@ impl TryFrom<Stored> for FairSpline {
         }
         let points = nodes.iter().map(|&k| curve.points()[k]).collect();
         let parameters = nodes.iter().map(|&k| curve.knots()[k]).collect();
-        let given = Parametrization::Given(parameters);
+        let given = shapespline_geometry::Parametrization::Given(parameters);
         let polygon = DataPolygon::with_dimension(points, curve.dimension(), &given, boundary)?;
         Ok(Self { curve, nodes, polygon, energy, corners, straight })
     }

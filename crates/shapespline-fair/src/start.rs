@@ -192,8 +192,8 @@ mod tests {
 
     use super::*;
     use crate::{
-        Constraints, chain::Chain, cubic::Plain, rows::Rules, runs::Runs, segment::Units,
-        starts::restart_all, window::Window,
+        Constraints, chain::Chain, cubic::Plain, rows::Rules, runs::Runs, starts::restart_all,
+        units::Units, window::Window,
     };
 
     /// Points of a walk in space or in the plane, lengths over one decade.

@@ -45,8 +45,11 @@ impl TensionPattern {
             .union(Violations::LINE_BEFORE_END)
             .union(Violations::NOT_REGULAR);
 
-        let (all, start, end) =
-            (violations.intersects(ALL), violations.intersects(AT_START), violations.intersects(AT_END));
+        let (all, start, end) = (
+            violations.intersects(ALL),
+            violations.intersects(AT_START),
+            violations.intersects(AT_END),
+        );
         let far = violations.intersects(FAR);
         let inside_start = violations.intersects(Violations::LINE_INSIDE_START);
         let inside_end = violations.intersects(Violations::LINE_INSIDE_END);

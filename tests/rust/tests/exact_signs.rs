@@ -110,7 +110,9 @@ fn no_verdict_contradicts_exact_arithmetic() {
         let (unproved, violations) = (own.unproved(SEGMENT, legs), own.violations(SEGMENT, legs));
         let around = [SEGMENT - 1, SEGMENT, SEGMENT + 1].map(|i| own.requirements()[i]);
         let calls = around[1];
-        for criterion in Criterion::ALL.into_iter().filter(|&c| calls.intersects(Requirements::of(c))) {
+        for criterion in
+            Criterion::ALL.into_iter().filter(|&c| calls.intersects(Requirements::of(c)))
+        {
             let Some(holds) = exact.holds(&polygon, SEGMENT, criterion, around, &tolerances) else {
                 continue;
             };

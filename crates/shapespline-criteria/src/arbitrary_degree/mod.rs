@@ -17,11 +17,13 @@ mod cubics;
 mod margin;
 mod pieces;
 mod prove_sign;
+mod question;
 mod segment;
 mod single_sign_change;
 mod turning;
 
 pub use checker::{CurveChecker, CurveError, INTERPOLATION, check_curve};
 pub(crate) use margin::{margin, minimum};
-pub(crate) use prove_sign::{Question, corners, is_never_outside, prove_sign};
-pub(crate) use segment::{Piece, Segment};
+pub(crate) use prove_sign::{is_never_outside, prove_sign};
+pub(crate) use question::Question;
+pub(crate) use segment::{Piece, Segment, corners};

@@ -11,7 +11,8 @@ use crate::{
     Checker, Criterion, Requirements,
     regular::leads_along,
     rounding::{Coarse, LEG_ERROR, Lean, UNIT, sum},
-    violations::{SegmentGeometry, unproved, violations},
+    segment_geometry::SegmentGeometry,
+    violations::{unproved, violations},
 };
 
 /// What is decided piece by piece: no part of a segment that begins or ends within a piece is asked.

@@ -5,59 +5,11 @@
 use glam::DVec3;
 use shapespline_polynomial::{Polynomial, Sign};
 
-use super::{Piece, Segment, single_sign_change::has_single_sign_change, turning::turns_at_nodes};
-use crate::{
-    Criterion, Requirements,
-    regular::Hodograph,
-    violations::{Cones, LINE_PART},
+use super::{
+    Piece, Question, Segment, corners, single_sign_change::has_single_sign_change,
+    turning::turns_at_nodes,
 };
-
-/// What a segment is asked, and by which vectors of the polygon.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Question {
-    pub(crate) criterion: Criterion,
-    pub(crate) required: Requirements,
-    /// Unit binormal vectors at the two nodes.
-    pub(crate) normals: [DVec3; 2],
-    /// Those at the nodes beside them, and the unit chord, by which turning goes.
-    pub(crate) beside: [DVec3; 2],
-    pub(crate) chord: DVec3,
-    pub(crate) cones: Cones,
-}
-
-impl Question {
-    /// The sign that the torsion has to have.
-    pub(crate) fn torsion_sign(&self) -> f64 {
-        if self.required.intersects(Requirements::RIGHT_TORSION) { 1.0 } else { -1.0 }
-    }
-
-    /// The parts of the segment on which a cone condition is asked, each with its cone: axis and
-    /// sine.
-    pub(crate) fn cone_parts(&self) -> Vec<([f64; 2], DVec3, f64)> {
-        let mut parts = Vec::new();
-        if self.criterion == Criterion::Coplanarity {
-            let (epsilon, normals) = self.cones.plane;
-            for normal in normals {
-                if self.required.intersects(Requirements::COPLANARITY) {
-                    parts.push(([0.0, 1.0], normal, epsilon));
-                } else {
-                    let [left, right] = self.cones.parts;
-                    parts.push(([0.0, left], normal, epsilon));
-                    parts.push(([right, 1.0], normal, epsilon));
-                }
-            }
-        } else {
-            let (epsilon, [start, end]) = self.cones.line;
-            if self.required.intersects(Requirements::LINE_AT_START) {
-                parts.push(([0.0, LINE_PART], start, epsilon));
-            }
-            if self.required.intersects(Requirements::LINE_AT_END) {
-                parts.push(([1.0 - LINE_PART, 1.0], end, epsilon));
-            }
-        }
-        parts
-    }
-}
+use crate::{Criterion, regular::Hodograph};
 
 /// The verdict, with parameters local to the segment.
 pub(crate) fn prove_sign(segment: &Segment, question: &Question) -> Sign {
@@ -92,17 +44,6 @@ pub(crate) fn prove_sign(segment: &Segment, question: &Question) -> Sign {
     }
 }
 
-/// The sign of a value at a parameter that is known to an error.
-pub(crate) fn clear(value: f64, error: f64, at: f64) -> Sign {
-    if value > error {
-        Sign::Positive
-    } else if value < -error || value == 0.0 || value.is_nan() {
-        Sign::Fails { at }
-    } else {
-        Sign::Undecided { from: at, to: at }
-    }
-}
-
 fn each(segment: &Segment, sign: impl Fn(&Piece) -> Sign) -> Sign {
     segment.pieces.iter().fold(Sign::Positive, |known, piece| match known {
         Sign::Fails { .. } => known,
@@ -115,18 +56,6 @@ pub(crate) fn turns(segment: &Segment, n: DVec3) -> Sign {
     let smooth = each(segment, |piece| piece.omega().map(1.0, |w| w.dot(n)).sign());
     corners(segment).fold(smooth, |known, (at, turn, error)| {
         if turn.dot(n) < -error { known.and(Sign::Fails { at }) } else { known }
-    })
-}
-
-/// The turns `u⁻ × u⁺` of unit tangents where pieces meet, with the place and the error.
-pub(crate) fn corners(segment: &Segment) -> impl Iterator<Item = (f64, DVec3, f64)> {
-    segment.pieces.windows(2).map(|pair| {
-        let (before, after) = (pair[0].tangent(), pair[1].tangent());
-        let (u, v) = (before.ends()[1], after.ends()[0]);
-        let error = before.error() / u.length() + after.error() / v.length();
-        let turn = u.normalize_or_zero().cross(v.normalize_or_zero());
-        // Pieces that were meant to be smooth meet only to the rounding of their making.
-        (pair[1].local[0], turn, error.max(1e-12))
     })
 }
 

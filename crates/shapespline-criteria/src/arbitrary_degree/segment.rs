@@ -269,6 +269,18 @@ impl Piece {
     }
 }
 
+/// The turns `u⁻ × u⁺` of unit tangents where pieces meet, with the place and the error.
+pub(crate) fn corners(segment: &Segment) -> impl Iterator<Item = (f64, DVec3, f64)> {
+    segment.pieces.windows(2).map(|pair| {
+        let (before, after) = (pair[0].tangent(), pair[1].tangent());
+        let (u, v) = (before.ends()[1], after.ends()[0]);
+        let error = before.error() / u.length() + after.error() / v.length();
+        let turn = u.normalize_or_zero().cross(v.normalize_or_zero());
+        // Pieces that were meant to be smooth meet only to the rounding of their making.
+        (pair[1].local[0], turn, error.max(1e-12))
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -21,10 +21,7 @@ use std::f64::consts::FRAC_PI_2;
 use glam::DVec3;
 use shapespline_polynomial::{Polynomial, Sign};
 
-use super::{
-    Segment,
-    prove_sign::{clear, corners},
-};
+use super::{Segment, corners, question::clear};
 
 /// Subdivision ends at intervals of this part of a piece.
 const DEPTH: u32 = 44;

@@ -5,7 +5,7 @@
 use glam::DVec3;
 use shapespline_polynomial::{Polynomial, Sign};
 
-use super::{Question, Segment, prove_sign::clear};
+use super::{Question, Segment, question::clear};
 use crate::{Requirements, margin::Margin};
 
 /// What is asked at a node: vectors along which `ω`, and one along which the tangent, has to lead.

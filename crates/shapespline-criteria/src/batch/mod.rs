@@ -15,9 +15,11 @@ use shapespline_geometry::{
 
 use crate::{
     Criteria, Criterion, Requirements, Tolerances, Violations,
+    cone::Cones,
     regular::leads_along,
     rounding::{Coarse, Lean, leg_error, sum},
-    violations::{Cones, SegmentGeometry, unproved, violations},
+    segment_geometry::SegmentGeometry,
+    violations::{unproved, violations},
 };
 
 /// The shape criteria of a polygon, asked batch by batch: to the bit what a

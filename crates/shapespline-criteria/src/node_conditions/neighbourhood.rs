@@ -10,9 +10,9 @@ use super::{Around, NodeCondition, NodeRecord};
 use crate::{
     Criterion, Requirements,
     arbitrary_degree::{Question, Segment, is_never_outside, margin, minimum, prove_sign},
+    cone::Cones,
     margin::Margin,
     requirements::{inflection_parameter_between, plane_is_known},
-    violations::Cones,
 };
 
 /// The two segments that meet in the middle point, as one between the outer two.
