@@ -23,9 +23,9 @@
 
 use std::ops::Range;
 
-use rayon::prelude::*;
 use shapespline_banded::SolveError;
 use shapespline_geometry::{DVec3, DataPolygon, normalize};
+use shapespline_polynomial::parallel;
 
 mod node;
 mod normal;
@@ -67,20 +67,14 @@ pub(crate) fn tangents(
 ) -> Result<Vec<DVec3>, SolveError> {
     let count = polygon.nodes();
     let mut tangents: Vec<DVec3> = bytemuck::zeroed_vec(polygon.points().len());
-    let balance = |splits: &mut Splits, (k, out): (usize, &mut [DVec3])| {
-        splits.load(polygon, k * BLOCK..k * BLOCK + out.len(), zero, planar);
+    let balance = |splits: &mut Splits, start: usize, out: &mut [DVec3]| {
+        splits.load(polygon, start..start + out.len(), zero, planar);
         splits.minimize()?;
         splits.write(out);
         Ok(())
     };
     let all = &mut tangents[..count];
-    if count < MANY {
-        let mut splits = Splits::default();
-        all.chunks_mut(BLOCK).enumerate().try_for_each(|block| balance(&mut splits, block))?;
-    } else {
-        let blocks = all.par_chunks_mut(BLOCK).enumerate();
-        blocks.map_init(Splits::default, balance).collect::<Result<(), _>>()?;
-    }
+    parallel::parts::<_, _, _, Result<(), _>>(all, BLOCK, MANY, Splits::default, balance)?;
     // Of closed data the last point is the first.
     if count < tangents.len() {
         tangents[count] = tangents[0];

@@ -9,12 +9,11 @@ use shapespline_criteria::{
     batch::{BatchChecker, CachedChecker},
 };
 use shapespline_geometry::DataPolygon;
+use shapespline_polynomial::parallel;
 
 use crate::{
     FitError, FittedLegs, Outcome, Phase, SearchOptions, Status, Step, Strategy, TensionFamily,
-    lower::lower,
-    state::State,
-    system::{collect, refill},
+    lower::lower, state::State, system::MANY,
 };
 
 /// Searches for tensions under which a family's curve keeps the shape of its data.
@@ -52,14 +51,14 @@ where
     options.validate()?;
     let criteria = BatchChecker::new(polygon, options.criteria, options.tolerances);
     let mut windows = criteria.cached();
-    let mut legs = collect(polygon.segments(), |i| family.end_legs(i));
+    let mut legs: Vec<_> = parallel::map(polygon.segments(), MANY, |i| family.end_legs(i));
     let (violations, applicable) = windows.scan(|i| legs[i]);
     let clean = || ShapeReport::clean(polygon.segments(), options.criteria, applicable);
     if violations.is_empty() {
         return Ok(FittedLegs { legs, outcome: Outcome::solved(), report: clean() });
     }
     let outcome = search_from(violations, family, windows, options, monitor)?;
-    refill(&mut legs, |i| family.end_legs(i));
+    parallel::fill(&mut legs, MANY, |i, legs| *legs = family.end_legs(i));
     let open = outcome
         .violations
         .iter()

@@ -7,14 +7,13 @@ use std::{
     ops::{ControlFlow, Range},
 };
 
-use rayon::prelude::*;
 use shapespline_criteria::{Violations, batch::CachedChecker};
 use shapespline_geometry::DVec3;
+use shapespline_polynomial::parallel;
 
 use crate::{Diagnostics, Outcome, Phase, Status, Step, TensionFamily, doubts::Doubts};
 
-/// Touched neighbourhoods from which on they are checked on all threads. Not fewer: after a fork the threads of
-/// rayon's own pool are gone, and Python enters its own for work of this size only.
+/// Touched neighbourhoods from which on they are checked on all threads.
 const MANY: usize = 8192;
 
 /// Segments checked on each side of a trial change; beyond them its effect is negligible.
@@ -158,15 +157,15 @@ impl<'s, F: TensionFamily> State<'s, F> {
                 windows.unproved(range.clone(), legs, &mut self.violations);
             }
         } else {
-            let check = |windows: &mut CachedChecker<'_>, range: &Range<usize>| {
+            let check = |windows: &mut CachedChecker<'_>, k: usize| {
                 let mut found = Vec::new();
-                windows.unproved(range.clone(), legs, &mut found);
+                windows.unproved(touched[k].clone(), legs, &mut found);
                 found
             };
-            let ranges = touched.par_iter().with_min_len(MANY / 4);
-            let found: Vec<_> =
-                ranges.map_init(|| windows.another(), check).flatten_iter().collect();
-            self.violations.extend(found);
+            let windows = &*windows;
+            let found: Vec<Vec<_>> =
+                parallel::map_with(touched.len(), MANY, || windows.another(), check);
+            self.violations.extend(found.into_iter().flatten());
         }
         if untouched > 0 {
             self.violations.sort_unstable_by_key(|f| f.0);

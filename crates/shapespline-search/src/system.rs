@@ -4,9 +4,9 @@
 
 use std::ops::Range;
 
-use rayon::prelude::*;
 use shapespline_banded::{Row, Rows, SolveError, solve_once};
 use shapespline_geometry::{DVec3, DataPolygon, Span};
+use shapespline_polynomial::parallel;
 
 /// How tension makes tangents: a strictly diagonally dominant system whose coefficients depend on it.
 ///
@@ -78,30 +78,11 @@ pub fn try_each_row<E>(
 /// A system that f64 cannot hold.
 pub(crate) fn solve_legs<S: TensionSystem>(system: &S) -> Result<Vec<[DVec3; 2]>, SolveError> {
     let tangents = solve_once(system)?;
-    Ok(collect(system.polygon().segments(), |i| legs_of(system, &tangents, i)))
+    Ok(parallel::map(system.polygon().segments(), MANY, |i| legs_of(system, &tangents, i)))
 }
 
-/// From twice as many items on they are made on all threads.
-const MANY: usize = 16_384;
-
-/// `make(0), …, make(count − 1)`, on all threads where there are many.
-pub(crate) fn collect<T: Send>(count: usize, make: impl Fn(usize) -> T + Sync + Send) -> Vec<T> {
-    if count < 2 * MANY {
-        (0..count).map(make).collect()
-    } else {
-        (0..count).into_par_iter().with_min_len(MANY).map(make).collect()
-    }
-}
-
-/// [`collect`] into the memory of as many others.
-pub(crate) fn refill<T: Send>(items: &mut [T], make: impl Fn(usize) -> T + Sync + Send) {
-    let fill = |(i, item): (usize, &mut T)| *item = make(i);
-    if items.len() < 2 * MANY {
-        items.iter_mut().enumerate().for_each(fill);
-    } else {
-        items.par_iter_mut().with_min_len(MANY).enumerate().for_each(fill);
-    }
-}
+/// Segments from which on their legs are made on all threads.
+pub(crate) const MANY: usize = 32_768;
 
 #[inline(always)]
 pub(crate) fn legs_of<S: TensionSystem>(
