@@ -10,25 +10,42 @@
 //!
 //! Results are in the order of the items and do not depend on the number of threads. What a loop costs is what a call
 //! costs on few items.
+//!
+//! Without the feature `rayon` all work is done where it stands.
+
+#![cfg_attr(
+    not(feature = "rayon"),
+    allow(unused_variables, dead_code, reason = "without threads nothing is ever many")
+)]
 
 use std::ops::Range;
 
+#[cfg(feature = "rayon")]
 use rayon::prelude::*;
 
 /// What results are gathered in: a vector, an option or a result of one, a pair of vectors of the parts of pairs, or
 /// nothing. A failure ends the work; of several that happen at the same time any may be told.
+#[cfg(feature = "rayon")]
 pub trait Gather<T: Send>: FromIterator<T> + FromParallelIterator<T> {}
 
+#[cfg(feature = "rayon")]
 impl<T: Send, C: FromIterator<T> + FromParallelIterator<T>> Gather<T> for C {}
+
+/// What results are gathered in.
+#[cfg(not(feature = "rayon"))]
+pub trait Gather<T: Send>: FromIterator<T> {}
+
+#[cfg(not(feature = "rayon"))]
+impl<T: Send, C: FromIterator<T>> Gather<T> for C {}
 
 /// `of(0), …, of(count − 1)`.
 #[inline]
 pub fn map<T: Send, C: Gather<T>>(count: usize, many: usize, of: impl Fn(usize) -> T + Sync) -> C {
-    if count < many {
-        (0..count).map(of).collect()
-    } else {
-        (0..count).into_par_iter().with_min_len(least(many)).map(&of).collect()
+    #[cfg(feature = "rayon")]
+    if count >= many {
+        return (0..count).into_par_iter().with_min_len(least(many)).map(&of).collect();
     }
+    (0..count).map(of).collect()
 }
 
 /// The same, where each thread has a state of its own to work with, buffers say.
@@ -39,37 +56,46 @@ pub fn map_with<S, T: Send, C: Gather<T>>(
     state: impl Fn() -> S + Sync,
     of: impl Fn(&mut S, usize) -> T + Sync,
 ) -> C {
-    if count < many {
-        let mut state = state();
-        (0..count).map(|k| of(&mut state, k)).collect()
-    } else {
-        (0..count).into_par_iter().with_min_len(least(many)).map_init(&state, &of).collect()
+    #[cfg(feature = "rayon")]
+    if count >= many {
+        return (0..count)
+            .into_par_iter()
+            .with_min_len(least(many))
+            .map_init(&state, &of)
+            .collect();
     }
+    let mut state = state();
+    (0..count).map(|k| of(&mut state, k)).collect()
 }
 
 /// [`map`] over items that differ in the work they take: in parts of a few, however many there are, so that no thread is
 /// left with much at the end.
 pub fn map_uneven<T: Send, C: Gather<T>>(count: usize, of: impl Fn(usize) -> T + Sync) -> C {
-    (0..count).into_par_iter().with_max_len(4).map(&of).collect()
+    #[cfg(feature = "rayon")]
+    return (0..count).into_par_iter().with_max_len(4).map(&of).collect();
+    #[cfg(not(feature = "rayon"))]
+    return (0..count).map(of).collect();
 }
 
 /// Runs work on so many threads of its own; where the system grants none, on those that it is called from.
 pub fn on<T: Send>(threads: usize, run: impl FnOnce() -> T + Send) -> T {
-    match rayon::ThreadPoolBuilder::new().num_threads(threads).build() {
-        Ok(pool) => pool.install(run),
-        Err(_) => run(),
+    #[cfg(feature = "rayon")]
+    if let Ok(pool) = rayon::ThreadPoolBuilder::new().num_threads(threads).build() {
+        return pool.install(run);
     }
+    run()
 }
 
 /// `of` every item and its index, in its place.
 #[inline]
 pub fn fill<T: Send>(items: &mut [T], many: usize, of: impl Fn(usize, &mut T) + Sync) {
     let of = |(i, item): (usize, &mut T)| of(i, item);
-    if items.len() < many {
-        items.iter_mut().enumerate().for_each(of);
-    } else {
+    #[cfg(feature = "rayon")]
+    if items.len() >= many {
         items.par_iter_mut().with_min_len(least(many)).enumerate().for_each(of);
+        return;
     }
+    items.iter_mut().enumerate().for_each(of);
 }
 
 /// `of` the blocks `0..block`, `block..2·block`, … of `0..count`. The blocks are the same whatever the number of threads;
@@ -163,15 +189,14 @@ pub fn parts<P: Cut, S, T: Send, C: Gather<T>>(
         rest = Some(behind);
         Some((start, part))
     });
-    if count < many {
-        let mut state = state();
-        all.map(|(start, part)| of(&mut state, start, part)).collect()
-    } else {
+    #[cfg(feature = "rayon")]
+    if count >= many {
         let all: Vec<(usize, P)> = all.collect();
-        all.into_par_iter()
-            .map_init(&state, |state, (start, part)| of(state, start, part))
-            .collect()
+        let of = |state: &mut S, (start, part)| of(state, start, part);
+        return all.into_par_iter().map_init(&state, of).collect();
     }
+    let mut state = state();
+    all.map(|(start, part)| of(&mut state, start, part)).collect()
 }
 
 /// The results of two tasks, which run at the same time if they are `long`.
@@ -181,7 +206,11 @@ pub fn both<A: Send, B: Send>(
     a: impl FnOnce() -> A + Send,
     b: impl FnOnce() -> B + Send,
 ) -> (A, B) {
-    if long { rayon::join(a, b) } else { (a(), b()) }
+    #[cfg(feature = "rayon")]
+    if long {
+        return rayon::join(a, b);
+    }
+    (a(), b())
 }
 
 /// Items that one thread takes at least.
