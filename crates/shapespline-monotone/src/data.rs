@@ -108,20 +108,6 @@ impl Units {
         let (slope, x) = (self.slope(), self.spacing());
         scaled.iter().map(|v| (1..nu).fold(slope.scale(*v), |v, _| x.scale(v))).collect()
     }
-
-    /// A scaled energy in the data's units: y²/x³ for the bending energy, y² for the parametric one.
-    pub(crate) fn energy_out(self, fairness: crate::energy::Fairness, energy: f64) -> f64 {
-        let y = PowerOfTwo::new(self.ey);
-        let mut value = y.scale(energy);
-        if fairness == crate::energy::Fairness::Bending {
-            // Alternate the factors so that only a result out of range leaves the range.
-            let x = PowerOfTwo::new(-self.ex);
-            value = x.scale(value);
-            value = y.scale(value);
-            return x.scale(x.scale(value));
-        }
-        y.scale(value)
-    }
 }
 
 /// The first entry with a property (of its index and value).

@@ -2,7 +2,7 @@
 
 //! The two energies of a quintic segment, and how they are weighted.
 
-use crate::data::{Data, parts};
+use crate::data::{Data, PowerOfTwo, Units, parts};
 
 /// What the C² quintic minimises.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -27,6 +27,22 @@ impl std::str::FromStr for Fairness {
                 expected: "bending, parametric",
             }),
         }
+    }
+}
+
+impl Units {
+    /// A scaled energy in the data's units: y²/x³ for the bending energy, y² for the parametric one.
+    pub(crate) fn energy_out(self, fairness: Fairness, energy: f64) -> f64 {
+        let y = PowerOfTwo::new(self.ey);
+        let mut value = y.scale(energy);
+        if fairness == Fairness::Bending {
+            // Alternate the factors so that only a result out of range leaves the range.
+            let x = PowerOfTwo::new(-self.ex);
+            value = x.scale(value);
+            value = y.scale(value);
+            return x.scale(x.scale(value));
+        }
+        y.scale(value)
     }
 }
 

@@ -9,11 +9,8 @@
 
 use super::piece::Piece;
 use super::ramp::Ramp;
-use super::stretch::{Model, Room, Steps, Stretch};
+use super::stretch::{Barrier, Model, Room, Steps, Stretch};
 use std::ops::Range;
-
-/// What the diagonal of the Hessian has beyond that of cubics, from the intervals before and after a node.
-pub(super) type Barrier = [f64; 2];
 
 /// Steps of a node in a sweep.
 const SWEEP_STEPS: usize = 8;

@@ -7,10 +7,12 @@
 //! diagonal has a condition of at most 4 whatever the spacing: the influence of a node falls by a third at least from
 //! node to node.
 
-use super::bent::Barrier;
 use super::layer::Layer;
 use super::piece::Piece;
 use std::ops::Range;
+
+/// What the diagonal of the Hessian has beyond that of cubics, from the intervals before and after a node.
+pub(super) type Barrier = [f64; 2];
 
 /// Steps of Newton's method after which slopes that are asked for convexity are swept again: over many decades steps that
 /// suit one slope may be wrong for the next.
