@@ -11,10 +11,10 @@ use crate::{
     barrier::Barrier,
     element::{Legs, Node},
     energy::{self, Energy, Gauss},
-    newton::Workspace,
     rows::{Kind, Row, Rules, best_change, rows},
     segment::{FORWARD, Segment},
     shape::Shape,
+    workspace::Workspace,
 };
 
 /// How far a node may move.

@@ -15,7 +15,6 @@ use crate::{
     element::Node,
     export::Pieces,
     rows::Rules,
-    search::Answer,
     segment::Demands,
     shape::off_chord,
     solve::{LAST, Means, finish, finish_bending, improve, quicken, settle_nearby, solve},
@@ -346,4 +345,28 @@ fn unproved(demands: &Demands<'_>, chain: &Chain) -> Vec<usize> {
     };
     let open = (0..chain.segments.len()).filter(open);
     open.map(|k| index(chain, k, segments)).collect()
+}
+
+/// What was found in a window.
+pub(crate) struct Answer {
+    pub(crate) segments: Vec<(usize, Solved)>,
+    pub(crate) method: Method,
+    /// Segments that the exact check does not prove.
+    pub(crate) open: Vec<usize>,
+}
+
+impl Answer {
+    pub(crate) fn of(
+        demands: &Demands<'_>,
+        chain: &Chain,
+        method: Method,
+        open: Vec<usize>,
+    ) -> Self {
+        let total = demands.checker.polygon().segments();
+        let solved = |k: usize| {
+            let nodes = chain.ends(k).map(|j| chain.nodes[j]);
+            (index(chain, k, total), Solved { nodes, binding: chain.binding(k) })
+        };
+        Self { segments: (0..chain.segments.len()).map(solved).collect(), method, open }
+    }
 }

@@ -73,6 +73,7 @@ mod start;
 mod starts;
 mod units;
 mod window;
+mod workspace;
 
 pub use constraints::Constraints;
 pub use energy::Energy;

@@ -13,7 +13,6 @@
 //! of which is indefinite.
 
 use glam::DVec3;
-use shapespline_banded::{Block, BlockCholesky};
 
 use crate::{
     barrier::Barrier,
@@ -24,39 +23,8 @@ use crate::{
     energy,
     legs::{ElementGradient, ElementHessian, LegTerms},
     shape::{Gradient, Shape},
+    workspace::{Term, Workspace},
 };
-
-/// Memory of Newton's steps.
-#[derive(Debug, Default)]
-pub(crate) struct Workspace {
-    gradients: Vec<ElementGradient>,
-    hessians: Vec<ElementHessian>,
-    diagonal: Vec<Block<6>>,
-    coupling: Vec<Block<6>>,
-    right: Vec<[f64; 6]>,
-    factors: BlockCholesky<6>,
-    direction: Vec<Node>,
-    /// What each segment's Hessian is multiplied by, less one.
-    damping: Vec<f64>,
-    /// Whether a segment was damped in this step.
-    flagged: Vec<bool>,
-    values: Vec<f64>,
-    trial: Vec<f64>,
-    /// Values of all conditions, and after a step.
-    margins: Vec<f64>,
-    trial_margins: Vec<f64>,
-    /// What the step knew of each condition.
-    terms: Vec<Term>,
-    before: Vec<Node>,
-}
-
-/// What a step knows of a condition: its gradient, the primal multiplier and the weight of the gradient's square.
-#[derive(Debug, Clone, Copy)]
-struct Term {
-    gradient: Gradient,
-    primal: f64,
-    stiffness: f64,
-}
 
 /// When to stop.
 #[derive(Debug, Clone, Copy)]

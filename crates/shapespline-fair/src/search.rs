@@ -5,10 +5,8 @@
 use shapespline_polynomial::parallel;
 
 use crate::{
-    Method,
-    chain::Chain,
     control::Control,
-    ladder::{LadderResult, Solved, certify, fall_back, index},
+    ladder::{Answer, LadderResult, certify, fall_back},
     rows::Rules,
     segment::Demands,
     solve::{LAST, Means, finish, quicken, solve},
@@ -108,30 +106,6 @@ impl LadderResult<'_> {
             method = fall_back(demands, &mut chain, &mut open, control).unwrap_or(method);
         }
         (open.is_empty() || whole).then(|| Answer::of(demands, &chain, method, open))
-    }
-}
-
-/// What was found in a window.
-pub(crate) struct Answer {
-    pub(crate) segments: Vec<(usize, Solved)>,
-    pub(crate) method: Method,
-    /// Segments that the exact check does not prove.
-    pub(crate) open: Vec<usize>,
-}
-
-impl Answer {
-    pub(crate) fn of(
-        demands: &Demands<'_>,
-        chain: &Chain,
-        method: Method,
-        open: Vec<usize>,
-    ) -> Self {
-        let total = demands.checker.polygon().segments();
-        let solved = |k: usize| {
-            let nodes = chain.ends(k).map(|j| chain.nodes[j]);
-            (index(chain, k, total), Solved { nodes, binding: chain.binding(k) })
-        };
-        Self { segments: (0..chain.segments.len()).map(solved).collect(), method, open }
     }
 }
 
