@@ -5,11 +5,13 @@
 //! Keys are made of lengths, curvatures and angles around a node, rounded, so that neither the direction in
 //! which points are numbered nor position, orientation, mirror images and scale have a say.
 
-use std::cmp::Ordering;
-
 use shapespline_geometry::{DVec3, DataPolygon, length};
 
-use crate::{TensionFamily, bending::end_curvature, surroundings::Surroundings};
+use crate::{
+    TensionFamily,
+    bending::end_curvature,
+    surroundings::{Surroundings, compare},
+};
 
 /// Logarithms are rounded to this: smaller differences are rounding, or where bisection happened to end.
 const BUCKET: f64 = 1e-6;
@@ -55,11 +57,6 @@ pub(crate) fn sorted_groups<F: TensionFamily>(
     keys.chunk_by(|a, b| compare(a, b).is_eq())
         .map(|tied| tied.iter().map(|key| key.tension).collect())
         .collect()
-}
-
-/// Compares numbers in order.
-pub(crate) fn compare(a: &[f64], b: &[f64]) -> Ordering {
-    a.iter().zip(b).map(|(a, b)| a.total_cmp(b)).fold(Ordering::Equal, Ordering::then)
 }
 
 impl Key {

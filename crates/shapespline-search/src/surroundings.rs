@@ -6,8 +6,6 @@ use std::cmp::Ordering;
 
 use shapespline_geometry::{DVec3, DataPolygon, length};
 
-use crate::order::compare;
-
 /// Segments on each side of a node that are looked at. What is further away is not felt: a change dies
 /// away as `2^{−k}` over `k` nodes.
 const LOOK: usize = 64;
@@ -124,6 +122,11 @@ fn place(polygon: &DataPolygon, node: usize, side: usize, step: isize) -> Option
 
 fn angle(u: DVec3, v: DVec3) -> f64 {
     u.cross(v).length().atan2(u.dot(v))
+}
+
+/// Compares numbers in order.
+pub(crate) fn compare(a: &[f64], b: &[f64]) -> Ordering {
+    a.iter().zip(b).map(|(a, b)| a.total_cmp(b)).fold(Ordering::Equal, Ordering::then)
 }
 
 /// In whole units of [`ROUNDING`]; zero without a sign.
