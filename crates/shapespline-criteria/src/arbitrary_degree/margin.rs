@@ -171,7 +171,7 @@ fn sign_change(jet: &Jet, [p, q]: [DVec3; 2], s2: f64) -> [f64; 3] {
     [omega.dot(p), -omega.dot(q), jet.d[1].length() * s2]
 }
 
-/// How clearly one of the three conditions of [`super::swing`] holds.
+/// How clearly one of the three conditions of [`super::single_sign_change`] holds.
 fn clearness(jet: &Jet, normals: [DVec3; 2], [s2, s3]: [f64; 2]) -> f64 {
     let [x, y, size] = sign_change(jet, normals, s2);
     let (x, y) = (ratio(x, size), ratio(y, size));
