@@ -31,6 +31,7 @@ mod finish;
 mod input;
 mod interior;
 mod interval;
+mod newton;
 mod penalty;
 mod pool;
 mod rows;

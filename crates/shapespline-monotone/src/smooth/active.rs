@@ -2,8 +2,8 @@
 
 //! What is 0 at the optimum: a first answer from the interior point, and what the multipliers of Newton's answer say of it.
 
-use super::finish::Newton;
 use super::interior::{State, Task};
+use super::newton::Newton;
 
 /// Ratios of rises to multipliers beyond which it is clear what is 0; the least share of a multiplier in the push.
 const CLEAR: f64 = 30.0;

@@ -11,7 +11,8 @@ use super::active::active;
 use super::bent::arms;
 use super::interior::{State, Task};
 use super::interval::Model;
-use super::system::{HELD, Layout, System};
+use super::newton::Newton;
+use super::system::{HELD, System};
 use crate::MonotoneError;
 use crate::interrupt::{GoOn, check_interrupt};
 
@@ -40,7 +41,7 @@ const LEAST_BEND: f64 = 1e-3;
 #[derive(Debug, Clone)]
 pub(super) struct Optimum {
     pub(super) first: f64,
-    /// Rises, then slopes ([`Layout`]).
+    /// Rises, then slopes ([`Layout`](super::system::Layout)).
     pub(super) sizes: Vec<f64>,
     /// Which of the sizes are held at 0.
     pub(super) held: Vec<bool>,
@@ -48,22 +49,6 @@ pub(super) struct Optimum {
     /// The interior point's steps and Newton's.
     pub(super) steps: usize,
     pub(super) converged: bool,
-}
-
-/// Newton's method at a point, with room for its arrays.
-pub(super) struct Newton<'a> {
-    pub(super) task: &'a Task,
-    pub(super) lambda: f64,
-    pub(super) layout: Layout,
-    pub(super) held: Vec<bool>,
-    /// Products that sizes keep with their multipliers; 0 where they are held or free.
-    pub(super) centred: Vec<f64>,
-    pub(super) models: Vec<Model>,
-    pub(super) f: Vec<f64>,
-    pub(super) pull: Vec<f64>,
-    /// Models and values before a step.
-    before: (Vec<Model>, Vec<f64>),
-    trial: Vec<f64>,
 }
 
 /// The optimum near an interior point's answer, or what is nearer to it than that; `None` where nothing is.
@@ -131,15 +116,7 @@ pub(super) fn finish(
     Ok(None)
 }
 
-impl<'a> Newton<'a> {
-    fn new(task: &'a Task, lambda: f64) -> Self {
-        let layout = task.layout();
-        let (held, centred) = (vec![false; layout.len()], vec![0.0; layout.len()]);
-        let (models, f, pull, trial) = (vec![], vec![], vec![], vec![]);
-        let before = (vec![], vec![]);
-        Self { task, lambda, layout, held, centred, models, f, pull, before, trial }
-    }
-
+impl Newton<'_> {
     fn evaluate(&mut self, first: f64, sizes: &[f64]) {
         let (task, lambda) = (self.task, self.lambda);
         self.models.clear();

@@ -12,6 +12,7 @@ use shapespline::geometry::{DVec3, Dimension};
 use crate::error::{Value, invalid, must};
 
 mod array;
+mod copy;
 mod unusual;
 
 pub(crate) use array::{_floats, Array, array, finite};

@@ -12,7 +12,7 @@ use pyo3::{
 };
 
 use super::{
-    array::{copied, index_of, wrong_kind},
+    copy::{copied, index_of, wrong_kind},
     kind, reworded,
 };
 use crate::error::{Value, invalid, joined};
