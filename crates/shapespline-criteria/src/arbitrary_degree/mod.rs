@@ -14,15 +14,18 @@
 mod checker;
 mod corner;
 mod cubics;
+mod error;
 mod margin;
 mod pieces;
 mod prove_sign;
 mod question;
 mod segment;
+mod single_pieces;
 mod single_sign_change;
 mod turning;
 
-pub use checker::{CurveChecker, CurveError, INTERPOLATION, check_curve};
+pub use checker::{CurveChecker, INTERPOLATION, check_curve};
+pub use error::CurveError;
 pub(crate) use margin::{margin, minimum};
 pub(crate) use prove_sign::{is_never_outside, prove_sign};
 pub(crate) use question::Question;
