@@ -99,7 +99,7 @@ pub struct CatmullRom {
     continuity: Continuity,
 }
 
-/// What was stored, by whomever: checked as far as anything could go wrong later.
+/// The stored form, which may come from anywhere: checked as far as anything could go wrong later.
 #[cfg(feature = "serde")]
 #[derive(serde::Deserialize)]
 #[serde(rename = "CatmullRom")]

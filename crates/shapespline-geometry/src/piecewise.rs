@@ -47,7 +47,7 @@ pub struct PiecewiseCubic {
     locator: Locator,
 }
 
-/// What was stored, by whomever: it becomes a curve only if the constructor takes it.
+/// The stored form, which may come from anywhere: it becomes a curve only if the constructor takes it.
 #[cfg(feature = "serde")]
 #[derive(serde::Deserialize)]
 #[serde(rename = "PiecewiseCubic")]
@@ -249,7 +249,7 @@ fn check_legs(legs: &[[DVec3; 2]]) -> Result<(), InputError> {
     let check = |legs: &[[DVec3; 2]]| check_room("legs", legs.as_flattened());
     let part = |(): &mut (), _, legs: &[[DVec3; 2]]| check(legs);
     parallel::parts::<_, _, _, Result<(), _>>(legs, MANY / 4, MANY, || (), part)
-        // Which leg is to blame, a check of all says.
+        // Check all in order to report the first leg that is wrong.
         .or_else(|_| check(legs))
         // Two legs a segment: the index is the segment's.
         .map_err(|error| match error {

@@ -24,7 +24,7 @@ pub struct ReparametrizedCubic {
     slopes: Vec<[f64; 2]>,
 }
 
-/// What was stored, by whomever: it becomes a curve only if the constructor takes it.
+/// The stored form, which may come from anywhere: it becomes a curve only if the constructor takes it.
 #[cfg(feature = "serde")]
 #[derive(serde::Deserialize)]
 #[serde(rename = "ReparametrizedCubic")]

@@ -5,7 +5,7 @@
 //! Every function takes `many`, the number of items from which on they are shared out (in parts of no fewer than an
 //! eighth of that). Fewer never touch rayon, not even an iterator of its that would run on one thread: the first use of
 //! one starts rayon's own pool. A process that is forked after that, as Python's `multiprocessing` forks on Linux,
-//! inherits the pool without its threads and waits for them for ever. So Python calls small work where it stands, and
+//! inherits the pool without its threads and waits for them forever. So Python calls small work where it stands, and
 //! enters a pool that knows its process for work on 8,192 items and more; `many` is never less than that.
 //!
 //! Results are in the order of the items and do not depend on the number of threads. What a loop costs is what a call

@@ -129,7 +129,7 @@ impl Scale {
 ///     nothing of them.
 /// tangent_scale : float, array_like of shape (n,), or pair of array_like of shape (n - 1,)
 ///     λ from 1e-65 to 1, without unit: 1 gives the C² cubic spline, and smaller λ pull the curve to the
-///     polygon. One number, one a point, or (λ⁰, λ¹): one at the start and one at the end of each
+///     polygon. One number, one per point, or (λ⁰, λ¹): one at the start and one at the end of each
 ///     segment.
 ///
 /// Raises

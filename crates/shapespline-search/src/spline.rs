@@ -73,7 +73,7 @@ pub struct Spline<F: SplineFamily> {
     polygon: DataPolygon,
 }
 
-/// What was stored, by whomever: checked as far as anything could go wrong later.
+/// The stored form, which may come from anywhere: checked as far as anything could go wrong later.
 #[cfg(feature = "serde")]
 #[derive(serde::Deserialize)]
 struct Stored<C> {
